@@ -8,7 +8,7 @@ with X and Y in the selectors standing for Plotly's own classes.
 
 import re
 
-# for(s in rules)full=s.replace(/^,/," ,").replace(/X/g,".js-plotly-plot .plotly").replace(/Y/g,...),add(full,...)
+# for(s in rules)full=s.replace(/^,/," ,").replace(/X/g,".js-plotly-plot .plotly").replace(/Y/g,...),add(...)
 _LOOP = re.compile(
     r"""for\((?:var |let |const )?(?P<key>[\w$]+) in (?P<rules>[\w$]+)\)"""
     r"""[^;]{0,80}?\.replace\(/\^,/,(?:" ,"|' ,')\)"""
