@@ -1,0 +1,30 @@
+"""Shared by all tests: the repository's folder and a running `looplab serve`."""
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from serving import environment, serving
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    # The browser's event loop stays in the main thread once started, and its tests are the slow ones: last.
+    items.sort(key=lambda item: "browser" in Path(item.path).parts)
+
+
+@pytest.fixture(scope="session")
+def repository() -> Path:
+    return REPOSITORY
+
+
+@pytest.fixture(scope="session")
+def server_url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Address of a `looplab serve` started for this session from another folder than the repository."""
+    program = [sys.executable, "-m", "looplab"]
+    env = environment(PYTHONPATH=str(REPOSITORY / "server"))
+    with serving(program, tmp_path_factory.mktemp("server"), env) as url:
+        yield url

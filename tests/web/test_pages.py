@@ -1,0 +1,77 @@
+"""The HTML pages keep to their policy and say what a reader, or a screen reader, needs."""
+
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+PAGES = sorted((REPOSITORY / "web").glob("*.html"))
+
+
+class Page(HTMLParser):
+    """The start tags of a page, and the text of its title."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.title = ""
+        self._in_title = False
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        self._in_title = tag == "title"
+
+    def handle_endtag(self, tag: str) -> None:
+        self._in_title = False
+
+    def handle_data(self, data: str) -> None:
+        if self._in_title:
+            self.title += data
+
+    def all(self, name: str) -> list[dict[str, str | None]]:
+        return [attributes for tag, attributes in self.tags if tag == name]
+
+
+@pytest.fixture(params=PAGES, ids=lambda path: path.name)
+def page(request):
+    return Page(request.param.read_text(encoding="utf-8"))
+
+
+def test_there_are_pages():
+    assert {path.name for path in PAGES} >= {"index.html", "workbench.html", "lab.html"}
+
+
+def test_a_page_names_itself_and_its_language(page):
+    assert page.title.strip()
+    assert page.all("html")[0].get("lang") == "en"
+    assert any(meta.get("name") == "viewport" for meta in page.all("meta"))
+    assert len(page.all("main")) == 1
+
+
+def test_nothing_inline_that_the_policy_forbids(page):
+    assert all(script.get("src") for script in page.all("script")), "a script without src"
+    assert page.all("style") == [], "a style element"
+    handlers = [name for _, attributes in page.tags for name in attributes if name.startswith("on")]
+    assert handlers == []
+
+
+def test_what_a_page_loads_is_a_file_or_a_placeholder(page):
+    for reference in [script.get("src") for script in page.all("script")] + [
+        link.get("href") for link in page.all("link")
+    ]:
+        assert reference is not None
+        if reference.startswith("/static/"):
+            assert (REPOSITORY / "web" / reference.removeprefix("/static/")).is_file(), reference
+        else:
+            assert reference in ("{{plotly_js}}", "{{plotly_css}}", "{{math_font}}") or reference.startswith(
+                "data:"
+            ), reference
+
+
+def test_a_page_with_plotly_links_its_style_as_plotly_looks_for_it(page):
+    if any(script.get("src") == "{{plotly_js}}" for script in page.all("script")):
+        link = next(link for link in page.all("link") if link.get("href") == "{{plotly_css}}")
+        assert link.get("id") == "plotly.js-style-global"
+        assert "no-inline-styles" in (link.get("class") or "").split()
