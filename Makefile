@@ -1,8 +1,8 @@
 # Two targets matter: `make run` and `make test`. What they need is installed into .venv and node_modules
 # of this folder, once; a later run only looks at the stamps.
 
-HOST ?= 127.0.0.1
-PORT ?= 8000
+HOST = 127.0.0.1
+PORT = 8000
 PYTEST_ARGS ?=
 
 VENV := .venv

@@ -16,11 +16,9 @@ LONGEST = 400
 CODE = {".py", ".js", ".css", ".html", ".md", ".toml", ".yml", ".sh", ""}
 # What the engine may import beside itself and the standard library.
 ENGINE_MAY_IMPORT = {"numpy", "scipy", "looplab"}
-# Spelled in halves, so that this file does not offend its own rule.
-MACHINE_PATHS = re.compile(r"(?<![\w.])/(?:work|root|home|usr/src|opt/wheels)/")
-REGISTRIES = re.compile(
-    r"pypi\.org|pythonhosted|npmjs\.(?:org|com)|deb\.debian|\.(?:whl|tgz|deb)\b(?=[\"'\s?#])"
-)
+# A letter in brackets, so that this file does not offend its own rules.
+MACHINE_PATHS = re.compile(r"(?<![\w.])/(?:[w]ork|[r]oot|[h]ome|opt/[w]heels)/")
+REGISTRIES = re.compile(r"pypi[.]org|python[h]osted|npmj[s]\.|deb[.]debian|https?://\S+[.](?:whl|tgz|deb)\b")
 
 
 def tracked() -> list[Path]:
