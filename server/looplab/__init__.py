@@ -1,6 +1,3 @@
-"""looplab: an interactive web control lab.
-
-The control theory lives in `looplab.engine` and needs numpy and scipy only; `looplab.api` serves it.
-"""
+"""looplab: an interactive web control lab whose engine keeps dead time exact."""
 
 __version__ = "0.1.0"

@@ -1,0 +1,123 @@
+"""Where the open loop crosses |L| = 1 and the negative real axis: bracketed on the grid, then refined to rounding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from looplab.engine.frequency.bracketing import refine_brackets
+from looplab.engine.frequency.response import (
+    AXIS_GAP,
+    frequency_grid,
+    frequency_range,
+    log_magnitude,
+    phase_rad,
+)
+from looplab.engine.systems.transfer_function import TransferFunction
+
+FloatArray = npt.NDArray[np.float64]
+
+# |L| below which further phase crossovers of a dead time are not listed (gain margin above 1000).
+NEGLIGIBLE = 1e-3
+
+
+@dataclass(frozen=True)
+class Crossings:
+    """All crossovers of an open loop.
+
+    Attributes
+    ----------
+    omega : ndarray, shape (n,)
+        The search grid, crossovers included [rad/time].
+    gain_omega, gain_phase : ndarray
+        Frequencies with \\|L\\| = 1 [rad/time] and the phase there [rad].
+    phase_omega, phase_log_magnitude, phase_direction : ndarray
+        Frequencies with L on the negative real axis [rad/time], ln \\|L\\| there, and -1 where the phase falls, +1
+        where it rises. Passing over a pole on the imaginary axis counts, with infinite \\|L\\|.
+    cut : bool
+        The dead time makes further phase crossovers beyond the grid, all with \\|L\\| below 0.001.
+    """
+
+    omega: FloatArray
+    gain_omega: FloatArray
+    gain_phase: FloatArray
+    phase_omega: FloatArray
+    phase_log_magnitude: FloatArray
+    phase_direction: FloatArray
+    cut: bool
+
+
+def _search_grid(L: TransferFunction) -> FloatArray:
+    low, high = frequency_range(L)
+    low, high = low * 1e-2, high * 1e2
+    if L.theta > 0:
+        # Beyond this |L| < NEGLIGIBLE for good; the dead time would add crossovers without end.
+        if L.relative_degree > 0 and L.gain:
+            roots = np.concatenate([L.zeros, L.poles])
+            top = 2.0 * np.abs(roots).max(initial=0.0)
+            fade = (abs(L.gain) / NEGLIGIBLE) ** (1.0 / L.relative_degree)
+            high = max(top, fade, 4.0 * np.pi / L.theta) * 1.5
+        else:
+            high = max(frequency_range(L)[1], 40.0 * np.pi / L.theta)
+    return frequency_grid(L, min(low, high / 10), high)
+
+
+def _axis_poles(L: TransferFunction) -> FloatArray:
+    on_axis = (L.poles.imag > 0) & (np.abs(L.poles.real) <= AXIS_GAP * np.abs(L.poles))
+    return L.poles.imag[on_axis]
+
+
+def _axis_zeros(L: TransferFunction) -> FloatArray:
+    on_axis = (L.zeros.imag > 0) & (np.abs(L.zeros.real) <= AXIS_GAP * np.abs(L.zeros))
+    return L.zeros.imag[on_axis]
+
+
+def _gain_crossovers(L: TransferFunction, omega: FloatArray, log_mag: FloatArray) -> FloatArray:
+    sign = log_mag > 0
+    at = np.flatnonzero(sign[1:] != sign[:-1])
+    x = refine_brackets(lambda x, _: log_magnitude(L, np.exp(x)), np.log(omega[at]), np.log(omega[at + 1]))
+    return np.exp(x)
+
+
+def _phase_crossovers(L: TransferFunction, omega: FloatArray, phase: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Frequencies and directions; several levels may lie in one interval."""
+    band = np.floor((phase + np.pi) / (2.0 * np.pi))  # changes by one at each odd multiple of pi
+    left, level, direction = [], [], []
+    for i in np.flatnonzero(band[1:] != band[:-1]):
+        low, high = sorted((band[i], band[i + 1]))
+        levels = 2.0 * np.pi * np.arange(low + 1, high + 1) - np.pi
+        falling = band[i + 1] < band[i]
+        for value in levels[::-1] if falling else levels:
+            left.append(i)
+            level.append(value)
+            direction.append(-1.0 if falling else 1.0)
+    i, target = np.array(left, dtype=int), np.array(level)
+    a, b = np.log(omega[i]), np.log(omega[i + 1])
+
+    def f(x: FloatArray, which: npt.NDArray[np.intp]) -> FloatArray:
+        return phase_rad(L, np.exp(x)) - target[which]
+
+    return np.exp(refine_brackets(f, a, b)), np.array(direction)
+
+
+@lru_cache(maxsize=256)
+def crossings(L: TransferFunction) -> Crossings:
+    """Find every crossover of the open loop L; cached by content."""
+    empty = np.zeros(0)
+    omega = _search_grid(L)
+    if L.gain == 0.0:
+        return Crossings(omega, empty, empty, empty, empty, empty, False)
+    log_mag, phase = log_magnitude(L, omega), phase_rad(L, omega)
+    gain = _gain_crossovers(L, omega, log_mag)
+    where, direction = _phase_crossovers(L, omega, phase)
+    size = log_magnitude(L, where)
+    for b in _axis_poles(L):
+        size[np.abs(where - b) <= 2 * AXIS_GAP * b] = np.inf
+    for b in _axis_zeros(L):
+        size[np.abs(where - b) <= 2 * AXIS_GAP * b] = -np.inf
+    grid = np.unique(np.concatenate([omega, gain, where]))
+    cut = L.theta > 0
+    return Crossings(grid, gain, phase_rad(L, gain), where, size, direction, cut)

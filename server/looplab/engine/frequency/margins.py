@@ -1,0 +1,201 @@
+"""Stability margins and sensitivity peaks, with the closed-loop verdict beside them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from looplab.engine.frequency.bracketing import refine_brackets
+from looplab.engine.frequency.crossings import crossings
+from looplab.engine.frequency.nyquist import nyquist_count
+from looplab.engine.systems.transfer_function import TransferFunction
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class GainCrossover:
+    """\\|L\\| = 1 at omega [rad/time], with the phase margin there [deg]."""
+
+    omega: float
+    PM_deg: float
+
+
+@dataclass(frozen=True)
+class PhaseCrossover:
+    """L real and negative at omega [rad/time], with the gain margin 1/\\|L\\| there [-]."""
+
+    omega: float
+    GM: float
+
+
+@dataclass(frozen=True)
+class Margins:
+    """Margins of an open loop; None is explained in ``reasons`` under the field's name."""
+
+    closed_loop_stable: bool
+    GM: float | None
+    GM_dB: float | None
+    omega_180: float | None
+    PM_deg: float | None
+    omega_c: float | None
+    delay_margin: float | None
+    Ms: float | None
+    omega_Ms: float | None
+    Mt: float | None
+    omega_Mt: float | None
+    gain_crossovers: tuple[GainCrossover, ...]
+    phase_crossovers: tuple[PhaseCrossover, ...]
+    reasons: dict[str, str] = field(default_factory=dict)
+
+
+def _peak(L: TransferFunction, omega: FloatArray, kind: str) -> tuple[float, float]:
+    """Largest |S| or |T| over omega, refined where the slope changes sign; (value, omega)."""
+
+    def slope(x: FloatArray, _: object = None) -> FloatArray:
+        w = np.exp(x)
+        s = 1j * w
+        value = L(s)
+        q = L.log_derivative(s)
+        # d ln|S| / d omega = Im(T q), d ln|T| / d omega = -Im(S q), with q = L'/L.
+        part = value / (1.0 + value) if kind == "S" else -1.0 / (1.0 + value)
+        return np.imag(part * q) * w
+
+    def size(w: FloatArray) -> FloatArray:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            value = L.response(w)
+            return np.abs((1.0 if kind == "S" else value) / (1.0 + value))
+
+    with np.errstate(divide="ignore", invalid="ignore"):
+        x = np.log(omega)
+        rate = slope(x)
+        at = np.flatnonzero((rate[:-1] > 0) & (rate[1:] <= 0))
+        best = size(omega)
+        # Only the highest summits can win; the rest need no refinement.
+        if at.size > 8:
+            at = at[np.argsort(np.maximum(best[at], best[at + 1]))[-8:]]
+        tops = np.exp(refine_brackets(slope, x[at], x[at + 1]))
+    where = np.concatenate([omega, tops])
+    values = np.nan_to_num(np.concatenate([best, size(tops)]), nan=0.0)
+    i = int(np.argmax(values))
+    return float(values[i]), float(where[i])
+
+
+def _sensitivity_peaks(L: TransferFunction, omega: FloatArray) -> dict[str, float]:
+    Ms, omega_Ms = _peak(L, omega, "S")
+    Mt, omega_Mt = _peak(L, omega, "T")
+    ends: list[tuple[float, float]] = []
+    if L.origin_order == 0:
+        ends.append((L.origin_gain, 0.0))
+    if L.theta == 0 and L.relative_degree == 0:
+        ends.append((L.gain, np.inf))
+    for value, w in ends:
+        if value == -1.0:
+            Ms, omega_Ms, Mt, omega_Mt = np.inf, w, np.inf, w
+            continue
+        if abs(1.0 / (1.0 + value)) >= Ms * (1 - 1e-12):
+            Ms, omega_Ms = abs(1.0 / (1.0 + value)), w
+        if abs(value / (1.0 + value)) >= Mt * (1 - 1e-12):
+            Mt, omega_Mt = abs(value / (1.0 + value)), w
+    if L.theta > 0 and L.relative_degree == 0:
+        # The dead time turns L around a circle of radius |L(inf)| without end.
+        c = abs(L.gain)
+        if c >= 1.0 or 1.0 / (1.0 - c) > Ms:
+            Ms, omega_Ms = (np.inf if c >= 1.0 else 1.0 / (1.0 - c)), np.inf
+        if c >= 1.0 or c / (1.0 - c) > Mt:
+            Mt, omega_Mt = (np.inf if c >= 1.0 else c / (1.0 - c)), np.inf
+    if omega_Ms == omega[0] and L.relative_degree >= 0 and Ms <= 1.0 + 1e-12:
+        Ms = 1.0
+    if L.relative_degree > 0 and Ms <= 1.0:
+        Ms, omega_Ms = 1.0, np.inf
+    if L.origin_order > 0 and Mt <= 1.0:
+        Mt, omega_Mt = 1.0, 0.0
+    return {"Ms": Ms, "omega_Ms": omega_Ms, "Mt": Mt, "omega_Mt": omega_Mt}
+
+
+@lru_cache(maxsize=256)
+def margins(L: TransferFunction) -> Margins:
+    r"""Gain, phase and delay margins, all crossovers, and the peaks of the sensitivity functions.
+
+    .. math::
+
+        \mathrm{GM} = \frac{1}{|L(i\omega_{180})|}, \quad \mathrm{PM} = 180^\circ + \arg L(i\omega_c), \quad
+        M_s = \max_\omega \left|\frac{1}{1+L}\right|, \quad M_t = \max_\omega \left|\frac{L}{1+L}\right|
+
+    Of several crossovers the one that is nearest to instability is reported (smallest \|ln GM\|, smallest \|PM\|).
+
+    Parameters
+    ----------
+    L : TransferFunction
+        Proper open loop, dead time exact.
+
+    Returns
+    -------
+    Margins
+        None with a reason where a margin is infinite or undefined. GM is below 1 where lowering the gain (or, for an
+        unstable loop, raising it) crosses the limit. An unstable loop is a result; its margins prove nothing.
+
+    Notes
+    -----
+    GM > 1 and PM > 0 prove stability only for simple loops: ``closed_loop_stable`` is Nyquist's count.
+
+    References
+    ----------
+    .. [1] S. Skogestad, I. Postlethwaite, Multivariable Feedback Control, 2nd ed., Wiley 2005, sec. 2.4.
+    """
+    found = crossings(L)
+    count = nyquist_count(L)
+    stable = count.Z == 0 and not count.through_minus_one
+    reasons: dict[str, str] = {}
+
+    listed = np.isfinite(found.phase_log_magnitude)
+    phase_crossovers = [
+        PhaseCrossover(float(w), float(np.exp(-m)))
+        for w, m in zip(found.phase_omega[listed], found.phase_log_magnitude[listed], strict=True)
+    ]
+    if L.origin_order == 0 and L.origin_gain < 0:
+        phase_crossovers.insert(0, PhaseCrossover(0.0, 1.0 / abs(L.origin_gain)))
+    GM = omega_180 = GM_dB = None
+    if phase_crossovers:
+        nearest = min(phase_crossovers, key=lambda c: abs(np.log(c.GM)))
+        GM, omega_180, GM_dB = nearest.GM, nearest.omega, float(20 * np.log10(nearest.GM))
+    else:
+        text = "infinite: the phase never reaches -180 deg" if L.gain else "undefined: the open loop is zero"
+        reasons |= dict.fromkeys(("GM", "GM_dB", "omega_180"), text)
+
+    wrapped = np.mod(found.gain_phase, 2 * np.pi) - np.pi  # 0 on the negative real axis
+    gain_crossovers = [
+        GainCrossover(float(w), float(np.degrees(p))) for w, p in zip(found.gain_omega, wrapped, strict=True)
+    ]
+    PM_deg = omega_c = delay_margin = None
+    if gain_crossovers:
+        tightest = min(gain_crossovers, key=lambda c: abs(c.PM_deg))
+        PM_deg, omega_c = tightest.PM_deg, tightest.omega
+        if stable:
+            room = np.mod(found.gain_phase + np.pi, 2 * np.pi) / found.gain_omega
+            delay_margin = float(room.min())
+        else:
+            reasons["delay_margin"] = "undefined: the closed loop is not stable as it is"
+    else:
+        text = "infinite: the gain never reaches 1" if L.gain else "undefined: the open loop is zero"
+        reasons |= dict.fromkeys(("PM_deg", "omega_c", "delay_margin"), text)
+
+    peaks: dict[str, float | None] = dict(_sensitivity_peaks(L, found.omega)) if L.gain else dict(
+        Ms=1.0, omega_Ms=0.0, Mt=0.0, omega_Mt=0.0
+    )
+    for name in ("Ms", "Mt"):
+        value = peaks[name]
+        if value is not None and not value < 1e8:
+            peaks[name] = None
+            reasons[name] = "infinite: the Nyquist curve passes through -1"
+        if peaks[f"omega_{name}"] == np.inf:
+            peaks[f"omega_{name}"] = None
+            reasons[f"omega_{name}"] = "approached at ever higher frequencies"
+    return Margins(
+        stable, GM, GM_dB, omega_180, PM_deg, omega_c, delay_margin,
+        peaks["Ms"], peaks["omega_Ms"], peaks["Mt"], peaks["omega_Mt"],
+        tuple(gain_crossovers), tuple(phase_crossovers), reasons,
+    )  # fmt: skip

@@ -1,0 +1,41 @@
+"""Exact responses of a linear loop without dead time: one matrix exponential, then doubling."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import expm
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def delay_free_response(A: FloatArray, C: FloatArray, x0: FloatArray, h: float, count: int) -> FloatArray:
+    """Outputs C x of x' = A x at t = 0, h, 2h, ...
+
+    Parameters
+    ----------
+    A : ndarray, shape (n, n)
+        Constant inputs are states of their own [1/time].
+    C : ndarray, shape (p, n)
+    x0 : ndarray, shape (n, c)
+        c initial states, answered at once.
+    h : float
+        Sampling interval [time].
+    count : int
+        Number of samples.
+
+    Returns
+    -------
+    ndarray, shape (count, p, c)
+    """
+    n, c = x0.shape
+    power = expm(A * h)
+    states = np.empty((n, count, c))
+    states[:, 0] = x0
+    done = 1
+    while done < count:
+        more = min(done, count - done)
+        states[:, done : done + more] = (power @ states[:, :more].reshape(n, -1)).reshape(n, more, c)
+        power = power @ power
+        done += more
+    return (C @ states.reshape(n, -1)).reshape(-1, count, c).transpose(1, 0, 2)

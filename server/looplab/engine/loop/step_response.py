@@ -1,0 +1,246 @@
+"""Step responses of y and u, exact with and without dead time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from looplab.engine.errors import InvalidInput, NoConvergence
+from looplab.engine.loop.dead_time import TimeGrid, delay_grid, delayed_response
+from looplab.engine.loop.delay_free import delay_free_response
+from looplab.engine.loop.feedback_loop import FeedbackLoop
+from looplab.engine.systems.realization import realize
+from looplab.engine.systems.transfer_function import TransferFunction
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+MIN_POINTS, MAX_POINTS = 20, 5000
+SHORTEST_DEAD_TIME = 1e-6
+LARGEST_VALUE = 1e9
+
+
+@dataclass(frozen=True)
+class Response:
+    """y and u after a unit step, with their slopes; cut where the values leave +-1e9.
+
+    All arrays have the shape of ``t`` [time] (right-hand limits at jumps). ``truncated_at`` [time] and
+    ``truncated_reason`` are None for a whole response.
+    """
+
+    t: FloatArray
+    y: FloatArray
+    u: FloatArray
+    dy: FloatArray
+    du: FloatArray
+    final_y: float | None
+    truncated_at: float | None = None
+    truncated_reason: str | None = None
+
+
+@dataclass(frozen=True)
+class ClosedLoopStep:
+    """Responses to a unit step of the setpoint r and of the load d (at the plant input)."""
+
+    t: FloatArray
+    horizon: float
+    setpoint: Response
+    load: Response
+
+
+class LoopEquations:
+    """State equations of the loop, [x_plant, x_controller, r, d], as a function of the shift z of the dead time."""
+
+    def __init__(self, loop: FeedbackLoop) -> None:
+        P, C, F = realize(loop.plant), realize(loop.C), loop.feedforward
+        p, c = P.B.size, C.B.size
+        n = p + c + 2
+        self.base = np.zeros((n, n))
+        self.base[:p, :p] = P.A
+        self.base[p : p + c, p : p + c] = C.A
+        self.base[p : p + c, n - 2] = C.B
+        self.u0 = np.zeros(n)
+        self.u0[p : p + c] = C.C
+        self.u0[n - 2] = C.D + F
+        self.base[:p] += np.outer(P.B, self.u0)
+        self.base[:p, n - 1] += P.B
+        self.b_y = np.concatenate([-P.B * C.D, -C.B, [0.0, 0.0]])
+        # Plant output before its dead time: g x / (1 + Dp Dc z).
+        self.g = P.D * self.u0
+        self.g[:p] += P.C
+        self.g[n - 1] += P.D
+        self.Dc, self.DpDc = C.D, P.D * C.D
+
+    def at(self, z: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """A(z), shape (k, n, n), and the rows of y, u, dy/dt, du/dt, shape (k, 4, n), for z of shape (k,)."""
+        y = (z / (1.0 + self.DpDc * z))[:, None] * self.g
+        u = self.u0 - self.Dc * y
+        A = self.base + self.b_y[:, None] * y[:, None, :]
+        values = np.stack([y, u], axis=1)
+        return A, np.concatenate([values, values @ A], axis=1)
+
+    def closed_loop_matrix(self) -> FloatArray:
+        """A of the autonomous loop without dead time, shape (n, n): plant and controller states only."""
+        A, _ = self.at(np.ones(1))
+        return A[0, :-2, :-2].real
+
+    @property
+    def starts(self) -> FloatArray:
+        """Initial states of the setpoint and load steps, shape (n, 2)."""
+        x0 = np.zeros((self.base.shape[0], 2))
+        x0[-2, 0] = x0[-1, 1] = 1.0
+        return x0
+
+
+def _check(horizon: float, points: int, theta: float) -> None:
+    if not (np.isfinite(horizon) and horizon > 0):
+        raise InvalidInput("the horizon must be a positive time", field="horizon")
+    if not MIN_POINTS <= points <= MAX_POINTS:
+        raise InvalidInput(f"points must be from {MIN_POINTS} to {MAX_POINTS}", field="points")
+    if 0 < theta < SHORTEST_DEAD_TIME * horizon:
+        raise InvalidInput(
+            f"the dead time {theta:g} is shorter than a millionth of the horizon {horizon:g}",
+            field="theta",
+            hint="shorten the horizon, or leave the dead time out",
+        )
+
+
+def _cut(t: FloatArray, rows: FloatArray, final: float | None, why: str) -> Response:
+    with np.errstate(invalid="ignore"):
+        bad = ~(np.abs(rows[:, :2]) < LARGEST_VALUE).all(axis=1)
+    stop = int(np.argmax(bad)) if bad.any() else t.size
+    whole = stop == t.size
+    y, u, dy, du = rows[:stop].T
+    return Response(
+        t[:stop], y, u, dy, du, final, None if whole else float(t[stop]), None if whole else why
+    )
+
+
+def _final_values(loop: FeedbackLoop) -> tuple[float | None, float | None]:
+    """Limits of y for s to 0 after unit steps of r and d, as if the loop were stable."""
+    L = loop.open_loop
+    P, C = loop.plant, loop.C
+    if L.origin_order > 0:
+        setpoint = 1.0
+        # P/(1+L) ~ P/L = 1/C for small s.
+        load = 1.0 / C.dc_gain if C.origin_order == 0 and C.dc_gain else (0.0 if C.origin_order > 0 else None)
+        # A setpoint weight adds F P/(1+L): it vanishes with integral action, else shifts the final value.
+        if loop.feedforward and load is not None:
+            setpoint += loop.feedforward * load
+        return setpoint, load
+    if abs(1.0 + L.dc_gain) < 1e-12 or not np.isfinite(P.dc_gain):
+        return None, None
+    load = P.dc_gain / (1.0 + L.dc_gain)
+    return L.dc_gain / (1.0 + L.dc_gain) + loop.feedforward * load, load
+
+
+def closed_loop_step(loop: FeedbackLoop, horizon: float, points: int = 500) -> ClosedLoopStep:
+    r"""y and u after unit steps of the setpoint and of the load, exact to rounding, dead time included.
+
+    .. math:: y = \frac{P C}{1 + P C}\, r + \frac{P}{1 + P C}\, d, \qquad u = C (r - y)
+
+    Parameters
+    ----------
+    loop : FeedbackLoop
+        At rest before t = 0. The controller must not have a dead time of its own.
+    horizon : float
+        Length of the simulation, > 0 [time].
+    points : int
+        Samples wanted, 20 to 5000. With dead time the grid is chosen so that every multiple of the dead time is a
+        sample; it then has up to twice as many points and may end a step before the horizon.
+
+    Returns
+    -------
+    ClosedLoopStep
+        The load enters at the plant input. An unstable response is cut where it leaves +-1e9, with the reason.
+
+    Raises
+    ------
+    InvalidInput
+        Horizon or points outside their range, dead time below a millionth of the horizon, controller dead time.
+    NoConvergence
+        A neutral loop (biproper plant and controller with dead time) at or past \|Dc Dp\| = 1.
+
+    References
+    ----------
+    .. [1] R. Bellman, K. L. Cooke, Differential-Difference Equations, Academic Press 1963, ch. 3 (method of steps).
+    """
+    theta = loop.plant.theta
+    if loop.C.theta:
+        raise InvalidInput(
+            "a controller with a dead time of its own cannot be simulated here",
+            field="controller",
+            hint="move the dead time into the plant",
+        )
+    _check(horizon, points, theta)
+    equations = LoopEquations(loop)
+    if theta and abs(equations.DpDc) >= 1.0:
+        raise NoConvergence(
+            f"|C(inf) P(inf)| = {abs(equations.DpDc):.4g} is not below 1: with dead time this loop is unstable at "
+            "every high frequency",
+            field="controller",
+            hint="lower the gain, or give the plant or the controller a lag",
+        )
+    with np.errstate(over="ignore", invalid="ignore"):
+        if theta == 0.0:
+            grid = TimeGrid(horizon / (points - 1), points, 1, 1)
+            A, rows = equations.at(np.ones(1))
+            out = delay_free_response(A[0].real, rows[0].real, equations.starts, grid.h, grid.count)
+        else:
+            grid = delay_grid(theta, horizon, points)
+            out = delayed_response(equations.at, equations.starts, theta, grid)
+    t, why = grid.t, f"the response grows beyond {LARGEST_VALUE:g}: the loop is unstable"
+    final_r, final_d = _final_values(loop)
+    return ClosedLoopStep(
+        t, horizon, _cut(t, out[:, :, 0], final_r, why), _cut(t, out[:, :, 1], final_d, why)
+    )
+
+
+def step_response(system: TransferFunction, horizon: float, points: int = 500) -> Response:
+    """Unit step response of one system, exact to rounding; its dead time only shifts it.
+
+    Parameters
+    ----------
+    system : TransferFunction
+        Proper.
+    horizon, points :
+        As in closed_loop_step.
+
+    Returns
+    -------
+    Response
+        u is the step itself.
+
+    Raises
+    ------
+    ImproperSystem, InvalidInput
+    """
+    _check(horizon, points, system.theta)
+    ss = realize(system)
+    n = ss.B.size
+    A = np.zeros((n + 1, n + 1))
+    A[:n, :n], A[:n, n] = ss.A, ss.B
+    row = np.append(ss.C, ss.D)
+    x0 = np.zeros((n + 1, 1))
+    x0[-1] = 1.0
+    grid = (
+        delay_grid(system.theta, horizon, points)
+        if system.theta
+        else TimeGrid(horizon / (points - 1), points, 1, 1)
+    )
+    # On the dead-time grid theta is per_interval steps, or 1/intervals_per_step of one.
+    shift = grid.per_interval if system.theta and grid.intervals_per_step == 1 else 0
+    offset = grid.h - system.theta if system.theta and grid.intervals_per_step > 1 else 0.0
+    if offset:
+        from scipy.linalg import expm
+
+        x0, shift = expm(A * offset) @ x0, 1
+    with np.errstate(over="ignore", invalid="ignore"):
+        values = delay_free_response(A, np.stack([row, row @ A]), x0, grid.h, grid.count)[:, :, 0]
+    rows = np.zeros((grid.count, 4))
+    rows[shift:, [0, 2]] = values[: grid.count - shift]
+    rows[:, 1] = 1.0
+    final = system.dc_gain if np.isfinite(system.dc_gain) else None
+    return _cut(grid.t, rows, final, f"the response grows beyond {LARGEST_VALUE:g}")

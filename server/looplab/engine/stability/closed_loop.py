@@ -1,0 +1,187 @@
+"""Closed-loop poles, with and without dead time, and the verdict they give."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from looplab.engine.frequency.crossings import crossings
+from looplab.engine.frequency.nyquist import nyquist_count
+from looplab.engine.loop.feedback_loop import FeedbackLoop
+from looplab.engine.loop.step_response import LoopEquations
+from looplab.engine.stability.delay_line import delay_line_matrix
+from looplab.engine.stability.polish import polish_closed_loop_poles
+from looplab.engine.systems.transfer_function import TransferFunction
+
+ComplexArray = npt.NDArray[np.complex128]
+
+# A pole counts as on the imaginary axis when its real part is below this fraction of its size.
+AXIS_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class ClosedLoopPoles:
+    """Closed-loop poles, rightmost first [rad/time]; ``complete`` is False where dead time makes them infinitely many."""
+
+    poles: ComplexArray
+    complete: bool
+    reason: str | None = None
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """``verdict`` is "stable", "marginal" or "unstable"; ``because`` says it in a sentence.
+
+    ``rhp_poles`` counts the closed-loop poles right of the imaginary axis; None when they are infinitely many.
+    """
+
+    verdict: str
+    closed_loop_stable: bool
+    because: str
+    rhp_poles: int | None
+
+
+def _sorted(poles: ComplexArray) -> ComplexArray:
+    return poles[np.lexsort((poles.imag, np.round(poles.real, 9)))[::-1]]
+
+
+def _dead_time_poles(loop: FeedbackLoop) -> ComplexArray:
+    L = loop.open_loop
+    theta = loop.theta
+    fastest = float(crossings(L).gain_omega.max(initial=0.0))
+    nodes = int(min(20 + np.ceil(1.5 * theta * fastest), 120))
+    candidates = np.linalg.eigvals(delay_line_matrix(LoopEquations(loop), theta, nodes))
+    # The collocation resolves about half a wave per node; what it cannot resolve is noise.
+    candidates = candidates[(np.abs(candidates.imag) * theta < 0.75 * nodes) & (candidates.imag >= 0)]
+    poles, good = polish_closed_loop_poles(L, candidates)
+    poles = _distinct(poles[good])
+    upper = poles[poles.imag > 1e-9 * np.abs(poles)]
+    real = poles[poles.imag <= 1e-9 * np.abs(poles)].real
+    return np.concatenate([real, upper, upper.conj()])
+
+
+def _distinct(poles: ComplexArray) -> ComplexArray:
+    kept: list[complex] = []
+    for p in poles:
+        if all(abs(p - q) > 1e-7 * max(abs(p), 1e-12) for q in kept):
+            kept.append(p)
+    return np.array(kept, dtype=complex)
+
+
+@lru_cache(maxsize=128)
+def closed_loop_poles(loop: FeedbackLoop) -> ClosedLoopPoles:
+    r"""Roots of 1 + P(s) C(s) = 0, hidden (cancelled) modes included.
+
+    Parameters
+    ----------
+    loop : FeedbackLoop
+
+    Returns
+    -------
+    ClosedLoopPoles
+        Without dead time all n of them, from the state matrix. With dead time the rightmost of infinitely many: the
+        delay line is collocated at Chebyshev points and each candidate is then polished on the exact equation
+        :math:`L_0(s) e^{-\theta s} = -1`.
+
+    References
+    ----------
+    .. [1] D. Breda, S. Maset, R. Vermiglio, SIAM J. Sci. Comput. 27 (2005) 482-495 (pseudospectral collocation).
+    """
+    if loop.theta == 0.0 or loop.open_loop.gain == 0.0:
+        poles = np.linalg.eigvals(LoopEquations(loop).closed_loop_matrix()) + 0j
+        polished, good = polish_closed_loop_poles(loop.open_loop, poles)
+        return ClosedLoopPoles(_sorted(np.where(good, polished, poles)), True)
+    reason = "dead time makes infinitely many closed-loop poles; the rightmost are listed"
+    poles = _sorted(_dead_time_poles(loop))
+    return ClosedLoopPoles(poles[:24], False, reason)
+
+
+def _number(value: float) -> str:
+    return f"{value:.3g}"
+
+
+def _pole_text(p: complex) -> str:
+    if abs(p.imag) <= AXIS_TOLERANCE * abs(p):
+        return _number(p.real)
+    return f"{_number(p.real)} ± {_number(abs(p.imag))}j"
+
+
+def _verdict_from_poles(poles: ComplexArray) -> Verdict:
+    if not poles.size:
+        return Verdict("stable", True, "the loop has no dynamics: it answers at once", 0)
+    # Eigenvalues of a cluster of m equal poles scatter by about eps^(1/m); a pole at the origin needs a scale.
+    scale = np.maximum(np.abs(poles), 1e-3 * np.abs(poles).max())
+    relative = poles.real / np.maximum(scale, 1e-300)
+    right = poles[relative > AXIS_TOLERANCE]
+    axis = poles[np.abs(relative) <= AXIS_TOLERANCE]
+    if right.size:
+        worst = right[np.argmax(right.real)]
+        many = f"{right.size} closed-loop poles lie" if right.size > 1 else "a closed-loop pole lies"
+        return Verdict(
+            "unstable",
+            False,
+            f"{many} in the right half-plane, at {_pole_text(worst)}: the response grows",
+            int(right.size),
+        )
+    if axis.size:
+        if any(np.count_nonzero(np.abs(axis - p) < 1e-6 * max(abs(p), 1e-6)) > 1 for p in axis):
+            return Verdict("unstable", False, "a repeated closed-loop pole lies on the imaginary axis", 0)
+        at = axis[np.argmax(axis.imag)]
+        what = "a closed-loop pole lies at the origin" if abs(at) < 1e-12 else (
+            f"a pair of closed-loop poles lies on the imaginary axis at ±{_number(abs(at.imag))}j: "
+            "the loop oscillates without end"
+        )
+        return Verdict("marginal", False, what, 0)
+    slowest = poles[np.argmax(poles.real)]
+    many = f"all {poles.size} closed-loop poles lie" if poles.size > 1 else "the closed-loop pole lies"
+    return Verdict(
+        "stable", True, f"{many} in the left half-plane; the rightmost at {_pole_text(slowest)}", 0
+    )
+
+
+@lru_cache(maxsize=128)
+def closed_loop_verdict(loop: FeedbackLoop) -> Verdict:
+    """Stable, marginal or unstable, and why.
+
+    Parameters
+    ----------
+    loop : FeedbackLoop
+
+    Returns
+    -------
+    Verdict
+        Without dead time from all closed-loop poles (hidden ones too: this is internal stability); with dead time
+        from Nyquist's count on the exact open loop, worded with the rightmost pole.
+    """
+    if loop.theta == 0.0 or loop.open_loop.gain == 0.0:
+        return _verdict_from_poles(closed_loop_poles(loop).poles)
+    L = loop.open_loop
+    count = nyquist_count(L)
+    if count.Z is None:
+        return Verdict("unstable", False, str(count.reason), None)
+    if count.through_minus_one and count.Z == 0:
+        w = _touching_frequency(L)
+        return Verdict(
+            "marginal", False, f"a pair of closed-loop poles lies on the imaginary axis at ±{_number(w)}j", 0
+        )
+    poles = closed_loop_poles(loop).poles
+    rightmost = f" The rightmost pole is at {_pole_text(poles[0])}." if poles.size else ""
+    if count.Z:
+        many = f"{count.Z} closed-loop poles lie" if count.Z > 1 else "a closed-loop pole lies"
+        return Verdict(
+            "unstable", False, f"{many} in the right half-plane (Nyquist: Z = N + P).{rightmost}", count.Z
+        )
+    return Verdict(
+        "stable", True, f"no closed-loop pole lies in the right half-plane (Nyquist: Z = N + P = 0).{rightmost}", 0
+    )
+
+
+def _touching_frequency(L: TransferFunction) -> float:
+    found = crossings(L)
+    if not found.gain_omega.size:
+        return 0.0
+    miss = np.abs(np.mod(found.gain_phase, 2 * np.pi) - np.pi)
+    return float(found.gain_omega[np.argmin(miss)])

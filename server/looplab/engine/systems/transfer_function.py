@@ -1,0 +1,236 @@
+"""The linear system of the engine: zeros, poles, gain and an exact dead time."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import overload
+
+import numpy as np
+import numpy.typing as npt
+
+from looplab.engine.errors import ImproperSystem, InvalidInput
+from looplab.engine.systems.polynomial import ComplexArray, FloatArray, from_roots, pair_conjugates, roots, trim
+
+MAX_ORDER = 50
+
+
+class TransferFunction:
+    r"""A rational transfer function in factored form with a dead time, immutable and hashable by content.
+
+    .. math:: G(s) = k\,\frac{\prod_i (s - z_i)}{\prod_j (s - p_j)}\; e^{-\theta s}
+
+    Nothing is cancelled and nothing is expanded: (s+1)^10 keeps its ten equal poles.
+
+    Parameters
+    ----------
+    zeros, poles : array_like of complex
+        Roots of numerator and denominator, closed under conjugation [rad/time].
+    gain : float
+        k, the ratio of leading coefficients (not the steady-state gain).
+    theta : float
+        Dead time, >= 0 [time].
+
+    Raises
+    ------
+    InvalidInput
+        A value is not finite, theta is negative, roots are not in conjugate pairs, or the order exceeds 50.
+    """
+
+    __slots__ = ("__dict__", "gain", "poles", "theta", "zeros")
+
+    zeros: ComplexArray
+    poles: ComplexArray
+    gain: float
+    theta: float
+
+    def __init__(
+        self, zeros: npt.ArrayLike = (), poles: npt.ArrayLike = (), gain: float = 1.0, theta: float = 0.0
+    ) -> None:
+        z, p = pair_conjugates(zeros, "zeros"), pair_conjugates(poles, "poles")
+        if not (np.isfinite(z).all() and np.isfinite(p).all()):
+            raise InvalidInput(
+                "zeros and poles must be finite numbers", field="zeros" if np.isfinite(p).all() else "poles"
+            )
+        if not np.isfinite(gain):
+            raise InvalidInput("the gain must be a finite number", field="gain")
+        if not np.isfinite(theta) or theta < 0:
+            raise InvalidInput(
+                "the dead time must be zero or positive",
+                field="theta",
+                hint="dead time delays: write exp(-0.5 s), theta = 0.5",
+            )
+        if max(z.size, p.size) > MAX_ORDER:
+            raise InvalidInput(f"order {max(z.size, p.size)} exceeds the limit of {MAX_ORDER}", field="poles")
+        for name, value in (("zeros", z), ("poles", p)):
+            value.setflags(write=False)
+            object.__setattr__(self, name, value)
+        object.__setattr__(self, "gain", float(gain))
+        object.__setattr__(self, "theta", float(theta))
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError("a TransferFunction is immutable")
+
+    @classmethod
+    def from_polynomials(cls, num: npt.ArrayLike, den: npt.ArrayLike, theta: float = 0.0) -> TransferFunction:
+        """Build from real coefficients, highest power first.
+
+        Raises
+        ------
+        InvalidInput
+            The denominator is zero or empty, or a coefficient is not finite.
+        """
+        n, d = (np.atleast_1d(np.asarray(c, dtype=float)) for c in (num, den))
+        for name, c in (("num", n), ("den", d)):
+            if c.ndim != 1 or c.size == 0 or not np.isfinite(c).all():
+                raise InvalidInput(f"{name} must be a list of finite numbers, highest power first", field=name)
+        n, d = trim(n), trim(d)
+        if not d.any():
+            raise InvalidInput("the denominator is zero", field="den", hint="give at least one non-zero coefficient")
+        if max(n.size, d.size) - 1 > MAX_ORDER:
+            raise InvalidInput(f"order {max(n.size, d.size) - 1} exceeds the limit of {MAX_ORDER}", field="den")
+        return cls(roots(n), roots(d), n[0] / d[0], theta)
+
+    @cached_property
+    def key(self) -> bytes:
+        """Content of the system; equal systems have equal keys."""
+        head = np.array([self.gain, self.theta, self.zeros.size]) + 0.0
+        return head.tobytes() + (self.zeros + 0.0).tobytes() + (self.poles + 0.0).tobytes()
+
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, TransferFunction) and self.key == other.key
+
+    def __repr__(self) -> str:
+        return (
+            f"TransferFunction(zeros={self.zeros.tolist()}, poles={self.poles.tolist()}, "
+            f"gain={self.gain!r}, theta={self.theta!r})"
+        )
+
+    @property
+    def order(self) -> int:
+        """Number of poles."""
+        return int(self.poles.size)
+
+    @property
+    def relative_degree(self) -> int:
+        """Number of poles minus number of zeros; negative when improper."""
+        return int(self.poles.size - self.zeros.size)
+
+    @property
+    def is_proper(self) -> bool:
+        """True when the system does not differentiate its input."""
+        return self.relative_degree >= 0 or self.gain == 0.0
+
+    @property
+    def num(self) -> FloatArray:
+        """Numerator coefficients, highest power first (expanded: loses digits for clustered zeros)."""
+        return self.gain * from_roots(self.zeros)
+
+    @property
+    def den(self) -> FloatArray:
+        """Monic denominator coefficients, highest power first (expanded: loses digits for clustered poles)."""
+        return from_roots(self.poles)
+
+    @property
+    def high_frequency_gain(self) -> float:
+        """Limit of the rational part for s to infinity: k for equal degrees, 0 when strictly proper."""
+        if self.relative_degree == 0:
+            return self.gain
+        return 0.0 if self.is_proper else float(np.copysign(np.inf, self.gain))
+
+    @cached_property
+    def origin_order(self) -> int:
+        """Poles minus zeros at s = 0: the number of integrators (negative: differentiators)."""
+        return int(np.count_nonzero(self.poles == 0) - np.count_nonzero(self.zeros == 0))
+
+    @cached_property
+    def origin_gain(self) -> float:
+        """Limit of s^m G(s) for s to 0 with m the number of integrators."""
+        z, p = self.zeros[self.zeros != 0], self.poles[self.poles != 0]
+        log_magnitude = np.log(np.abs(z)).sum() - np.log(np.abs(p)).sum()
+        negatives = np.count_nonzero((z.imag == 0) & (z.real > 0)) + np.count_nonzero((p.imag == 0) & (p.real > 0))
+        return float(self.gain * (-1.0) ** negatives * np.exp(log_magnitude))
+
+    @property
+    def dc_gain(self) -> float:
+        """Steady-state gain G(0): infinite for an integrator, 0 with a zero at the origin."""
+        if self.origin_order > 0:
+            return float(np.copysign(np.inf, self.origin_gain)) if self.gain else 0.0
+        return 0.0 if self.origin_order < 0 else self.origin_gain
+
+    @overload
+    def __call__(self, s: complex) -> complex: ...
+    @overload
+    def __call__(self, s: ComplexArray) -> ComplexArray: ...
+    def __call__(self, s):  # type: ignore[no-untyped-def]
+        """Value at complex s, dead time exact; infinite at a pole.
+
+        Zeros and poles are multiplied in alternation, so that order 50 neither overflows nor underflows.
+        """
+        s_array = np.asarray(s, dtype=complex)
+        value = self.gain * np.exp(-self.theta * s_array)
+        both = min(self.zeros.size, self.poles.size)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            for z, p in zip(self.zeros[:both], self.poles[:both], strict=True):
+                value = value * ((s_array - z) / (s_array - p))
+            for z in self.zeros[both:]:
+                value = value * (s_array - z)
+            for p in self.poles[both:]:
+                value = value / (s_array - p)
+        return complex(value) if value.ndim == 0 else value
+
+    def response(self, omega: npt.ArrayLike) -> ComplexArray:
+        """Frequency response G(j omega), shape of omega, dead time exact; omega in rad/time."""
+        return np.atleast_1d(self(1j * np.asarray(omega, dtype=float)))
+
+    def log_derivative(self, s: ComplexArray) -> ComplexArray:
+        r"""G'(s)/G(s) = sum 1/(s - z) - sum 1/(s - p) - theta, same shape as s."""
+        out = np.full(np.shape(s), -self.theta, dtype=complex)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            for z in self.zeros:
+                out += 1.0 / (s - z)
+            for p in self.poles:
+                out -= 1.0 / (s - p)
+        return out
+
+    def __mul__(self, other: TransferFunction | float) -> TransferFunction:
+        """Series connection: roots joined, gains multiplied, dead times added; nothing is cancelled."""
+        if isinstance(other, TransferFunction):
+            return TransferFunction(
+                np.concatenate([self.zeros, other.zeros]),
+                np.concatenate([self.poles, other.poles]),
+                self.gain * other.gain,
+                self.theta + other.theta,
+            )
+        return TransferFunction(self.zeros, self.poles, self.gain * float(other), self.theta)
+
+    __rmul__ = __mul__
+
+    def without_dead_time(self) -> TransferFunction:
+        """The rational part."""
+        return TransferFunction(self.zeros, self.poles, self.gain)
+
+    def require_proper(self, field: str | None = None) -> TransferFunction:
+        """Return self, or raise ImproperSystem naming ``field``."""
+        if not self.is_proper:
+            raise ImproperSystem(
+                f"the system has more zeros ({self.zeros.size}) than poles ({self.poles.size}): it differentiates "
+                "its input, which no real device does",
+                field=field,
+                hint="add the lag that the device has, for example divide by (0.01 s + 1)",
+            )
+        return self
+
+    def to_text(self, digits: int = 6) -> str:
+        """Factored text that the parser reads back, e.g. ``2 (s + 3)/(s^2 (s + 2)) exp(-0.1 s)``."""
+        from looplab.engine.systems.notation import to_text
+
+        return to_text(self, digits)
+
+    def to_latex(self, digits: int = 4) -> str:
+        """Factored LaTeX."""
+        from looplab.engine.systems.notation import to_latex
+
+        return to_latex(self, digits)
