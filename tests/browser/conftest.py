@@ -75,9 +75,7 @@ def watcher() -> Callable[..., list[str]]:
 
 
 @pytest.fixture
-def context(
-    context: BrowserContext, server_url: str, request: pytest.FixtureRequest
-) -> Iterator[BrowserContext]:
+def context(context: BrowserContext, server_url: str, request: pytest.FixtureRequest) -> Iterator[BrowserContext]:
     """A browser context whose pages fail the test by what they should never do.
 
     A test that provokes an error on purpose says which: `@pytest.mark.allow_console(r"status of 422")`.

@@ -9,9 +9,7 @@ import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 ENGINE = REPOSITORY / "server" / "looplab" / "engine"
-SECTION = re.compile(
-    r"^(Parameters|Returns|Yields|Raises|Notes|References|Attributes|Examples)\n-{4,}$", re.MULTILINE
-)
+SECTION = re.compile(r"^(Parameters|Returns|Yields|Raises|Notes|References|Attributes|Examples)\n-{4,}$", re.MULTILINE)
 # Formulas of the engine whose docstring must show the formula; a rename shows here.
 FORMULAS = {
     "margins",

@@ -17,9 +17,7 @@ ADDRESS = "http://127.0.0.1:8000"
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
 SHELL = [text.strip() for language, text in BLOCKS if language == "sh"]
 # An example and the output that the README prints under it.
-EXAMPLES = re.findall(
-    r"^```python\n(.*?)^```\n\nprints\n\n```text\n(.*?)^```$", README, re.DOTALL | re.MULTILINE
-)
+EXAMPLES = re.findall(r"^```python\n(.*?)^```\n\nprints\n\n```text\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
 ENV = environment(PYTHONPATH=str(REPOSITORY / "server"))
 
 

@@ -65,9 +65,9 @@ def test_what_a_page_loads_is_a_file_or_a_placeholder(page):
         if reference.startswith("/static/"):
             assert (REPOSITORY / "web" / reference.removeprefix("/static/")).is_file(), reference
         else:
-            assert reference in ("{{plotly_js}}", "{{plotly_css}}", "{{math_font}}") or reference.startswith(
-                "data:"
-            ), reference
+            assert reference in ("{{plotly_js}}", "{{plotly_css}}", "{{math_font}}") or reference.startswith("data:"), (
+                reference
+            )
 
 
 def test_a_page_with_plotly_links_its_style_as_plotly_looks_for_it(page):

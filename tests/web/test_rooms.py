@@ -20,9 +20,7 @@ def test_no_document_where_data_is_turned_into_data(scripts, room):
         f"{script.path}: {found[0]}"
         for script in scripts
         if script.room == room and str(script.path) != FIGURE
-        for found in re.finditer(
-            r"(?<![.\w])(?:document|customElements|HTML\w*Element|SVG\w*Element)\b", script.code
-        )
+        for found in re.finditer(r"(?<![.\w])(?:document|customElements|HTML\w*Element|SVG\w*Element)\b", script.code)
     ]
     assert touching == []
 
@@ -32,23 +30,17 @@ def test_no_page_asks_another_host(web, suffix):
     asked = [
         f"{path.relative_to(web)}: {address}"
         for path in web.rglob(f"*.{suffix}")
-        for address in re.findall(
-            r"""(?:https?:)?//[\w.-]+\.[a-z]{2,}[^\s"'`)<]*""", path.read_text(encoding="utf-8")
-        )
+        for address in re.findall(r"""(?:https?:)?//[\w.-]+\.[a-z]{2,}[^\s"'`)<]*""", path.read_text(encoding="utf-8"))
         if not address.startswith(NAMES)
     ]
     assert asked == []
 
 
 def test_nothing_is_left_for_a_debugger(scripts):
-    left = [
-        str(script.path) for script in scripts if re.search(r"\bdebugger\b|\bconsole\.log\b", script.code)
-    ]
+    left = [str(script.path) for script in scripts if re.search(r"\bdebugger\b|\bconsole\.log\b", script.code)]
     assert left == []
 
 
-@pytest.mark.parametrize(
-    "sink", [r"\beval\s*\(", r"\bnew Function\b", r"\bdocument\.write", r"\bouterHTML\s*="]
-)
+@pytest.mark.parametrize("sink", [r"\beval\s*\(", r"\bnew Function\b", r"\bdocument\.write", r"\bouterHTML\s*="])
 def test_no_text_becomes_code(scripts, sink):
     assert [str(script.path) for script in scripts if re.search(sink, script.code)] == []
