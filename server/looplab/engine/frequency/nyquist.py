@@ -23,11 +23,11 @@ class NyquistCount:
     ----------
     N : int or None
         Clockwise encirclements of -1 by L along the Nyquist contour (indented to the right of poles on the axis);
-        None when infinite.
+        None when infinite or not defined.
     P : int
         Poles of L in the open right half-plane, cancelled ones included.
     Z : int or None
-        Closed-loop poles in the open right half-plane, Z = N + P; None when infinite.
+        Closed-loop poles in the open right half-plane, Z = N + P; None when N is.
     reason : str or None
         Why N is infinite, or that the curve passes through -1.
     through_minus_one : bool
@@ -111,13 +111,10 @@ def nyquist_count(L: TransferFunction) -> NyquistCount:
         level = (2 * np.round((last - np.pi) / (2 * np.pi)) + 1) * np.pi
         if last != level:
             N += 1 if last > level else -1
-    return NyquistCount(
-        N,
-        P,
-        N + P,
-        "the curve passes through -1: a closed-loop pole lies on the imaginary axis" if touching else None,
-        touching,
-    )
+    if touching:
+        reason = "the curve passes through -1: a closed-loop pole lies on the imaginary axis and N is not defined"
+        return NyquistCount(None, P, None, reason, True)
+    return NyquistCount(N, P, N + P)
 
 
 @dataclass(frozen=True)

@@ -106,11 +106,13 @@ def _powers_of(step: ComplexArray, rows: ComplexArray, count: int) -> ComplexArr
     return out.reshape(nodes, count, p, n)
 
 
-def _coefficients(symbol: Symbol, grid: TimeGrid, theta: float, intervals: int) -> tuple[FloatArray, FloatArray]:
-    """F_j(theta), shape (J, n, n), and the output rows of F_j(k h), shape (J, q, p, n)."""
+def _coefficients(
+    symbol: Symbol, grid: TimeGrid, theta: float, intervals: int, radius: float
+) -> tuple[FloatArray, FloatArray]:
+    """F_j(theta) r^j, shape (J, n, n), and the output rows of F_j(k h) r^j, shape (J, q, p, n), r the radius."""
     nodes = 16
     while nodes <= MAX_NODES:
-        A, C = symbol(np.exp(-2j * np.pi * np.arange(nodes // 2 + 1) / nodes))
+        A, C = symbol(radius * np.exp(-2j * np.pi * np.arange(nodes // 2 + 1) / nodes))
         step = expm_batch(A * grid.h)
         end = _power(step, grid.per_interval) if grid.intervals_per_step == 1 else expm_batch(A * theta)
         # With these nodes the forward transform is the series itself, so irfft returns its coefficients.
@@ -162,7 +164,9 @@ def _leap(F: FloatArray, x0: FloatArray, every: int, count: int) -> FloatArray:
     return out.transpose(1, 0, 2).reshape(count, J, n, c)
 
 
-def delayed_response(symbol: Symbol, x0: FloatArray, theta: float, grid: TimeGrid) -> FloatArray:
+def delayed_response(
+    symbol: Symbol, x0: FloatArray, theta: float, grid: TimeGrid, neutral: float = 0.0
+) -> FloatArray:
     """Outputs of dx/dt = A(z) x, y = C(z) x with z the shift by theta, zero before t = 0.
 
     Parameters
@@ -175,25 +179,42 @@ def delayed_response(symbol: Symbol, x0: FloatArray, theta: float, grid: TimeGri
         Dead time, > 0 [time].
     grid : TimeGrid
         From delay_grid.
+    neutral : float
+        Size of the jump that comes back after one dead time, \\|Dc Dp\\| [-]. From 1 on such a loop is unstable at every
+        high frequency; its response is computed as far as it stays below 1e14.
 
     Returns
     -------
     ndarray, shape (grid.count, p, c)
-        Right-hand limits at the grid's times.
+        Right-hand limits at the grid's times; NaN beyond the computed part of a growing neutral loop.
 
     Raises
     ------
     NoConvergence
-        The series in z does not converge (a neutral loop at or past its limit).
+        The series in z does not converge.
     """
+    # Inside this circle the series converges; powers of the radius are undone interval by interval.
+    radius = 1.0 if neutral < 0.8 else 0.8 / neutral
     if grid.intervals_per_step > 1:
-        F, H = _coefficients(symbol, grid, theta, grid.count * grid.intervals_per_step)
+        F, H = _coefficients(symbol, grid, theta, grid.count * grid.intervals_per_step, radius)
+        if radius < 1.0:
+            scale = radius ** -np.arange(F.shape[0])
+            F, H = F * scale[:, None, None], H * scale[:, None, None, None]
         states = _leap(F, x0, grid.intervals_per_step, grid.count)
         return np.einsum("jpn,mjnc->mpc", H[:, 0], states)
     intervals = -(-grid.count // grid.per_interval)
-    F, H = _coefficients(symbol, grid, theta, intervals)
+    whole = intervals
+    if neutral > 1.0:
+        intervals = min(intervals, 2 + int(np.log(1e14) / np.log(neutral)))
+    F, H = _coefficients(symbol, grid, theta, intervals, radius)
+    if radius < 1.0:
+        scale = radius ** -np.arange(F.shape[0])
+        F, H = F * scale[:, None, None], H * scale[:, None, None, None]
     states = _march(F, x0, intervals)
     J, q, p, n = H.shape
     kernel = H.transpose(1, 2, 0, 3).reshape(q * p, J * n)
     out = kernel @ states.transpose(1, 2, 0, 3).reshape(J * n, -1)
-    return out.reshape(q, p, intervals, -1).transpose(2, 0, 1, 3).reshape(intervals * q, p, -1)[: grid.count]
+    out = out.reshape(q, p, intervals, -1).transpose(2, 0, 1, 3).reshape(intervals * q, p, -1)
+    if intervals < whole:
+        out = np.concatenate([out, np.full(((whole - intervals) * q, *out.shape[1:]), np.nan)])
+    return out[: grid.count]

@@ -44,13 +44,24 @@ class HermiteCurve:
         """Times at which the curve crosses a level, increasing."""
         above = self.y > level
         piece = np.flatnonzero(above[1:] != above[:-1])
+        if not piece.size:
+            return np.zeros(0)
+        y0, b, c, d = self._cubic[:, piece]
         low, high = np.zeros(piece.size), np.ones(piece.size)
         rising = above[piece + 1]
-        for _ in range(45):
-            middle = 0.5 * (low + high)
-            past = (self._value(piece, middle) > level) == rising
-            high, low = np.where(past, middle, high), np.where(past, low, middle)
-        return self._time(piece, 0.5 * (low + high))
+        x = (level - self.y[piece]) / (self.y[piece + 1] - self.y[piece])
+        for _ in range(60):
+            value = y0 + x * (b + x * (c + x * d)) - level
+            past = (value > 0) == rising
+            high, low = np.where(past, x, high), np.where(past, low, x)
+            with np.errstate(all="ignore"):
+                newton = x - value / (b + x * (2 * c + x * 3 * d))
+            inside = (newton > low) & (newton < high)
+            new = np.where(inside, newton, 0.5 * (low + high))
+            if (np.abs(new - x) < 4e-16).all() or (value == 0).all():
+                break
+            x = new
+        return self._time(piece, x)
 
     def extrema(self) -> tuple[FloatArray, FloatArray]:
         """Times and values of the turning points, corners at samples included, increasing in time."""

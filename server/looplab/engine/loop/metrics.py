@@ -82,7 +82,7 @@ def _shape(curve: HermiteCurve, final: float, out: dict[str, float | None], why:
     t_top, height = _overshoots(curve, final, direction)
     if t_top.size:
         i = int(np.argmax(height))
-        out["peak"], out["t_peak"] = final + direction * float(height[i]), float(t_top[i])
+        out["peak"], out["t_peak"] = float(final + direction * height[i]), float(t_top[i])
         out["overshoot_pct"] = 100.0 * float(height[i]) / abs(final)
     else:
         out["overshoot_pct"] = 0.0

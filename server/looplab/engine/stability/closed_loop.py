@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from looplab.engine.frequency.crossings import crossings
-from looplab.engine.frequency.nyquist import nyquist_count
+from looplab.engine.frequency.nyquist import NyquistCount, nyquist_count
 from looplab.engine.loop.feedback_loop import FeedbackLoop
 from looplab.engine.loop.step_response import LoopEquations
 from looplab.engine.stability.delay_line import delay_line_matrix
@@ -160,14 +160,16 @@ def closed_loop_verdict(loop: FeedbackLoop) -> Verdict:
         return _verdict_from_poles(closed_loop_poles(loop).poles)
     L = loop.open_loop
     count = nyquist_count(L)
+    poles = closed_loop_poles(loop).poles
+    if count.through_minus_one:
+        right = int(np.count_nonzero(poles.real > 1e-6 * np.abs(poles)))
+        if not right:
+            w = _touching_frequency(L)
+            at = "the origin" if w == 0 else f"±{_number(w)}j"
+            return Verdict("marginal", False, f"closed-loop poles lie on the imaginary axis, at {at}", 0)
+        count = NyquistCount(None, count.P, right)
     if count.Z is None:
         return Verdict("unstable", False, str(count.reason), None)
-    if count.through_minus_one and count.Z == 0:
-        w = _touching_frequency(L)
-        return Verdict(
-            "marginal", False, f"a pair of closed-loop poles lies on the imaginary axis at ±{_number(w)}j", 0
-        )
-    poles = closed_loop_poles(loop).poles
     rightmost = f" The rightmost pole is at {_pole_text(poles[0])}." if poles.size else ""
     if count.Z:
         many = f"{count.Z} closed-loop poles lie" if count.Z > 1 else "a closed-loop pole lies"

@@ -184,6 +184,8 @@ def parse_transfer_function(text: str) -> TransferFunction:
         raise ParseError(
             "dividing by a dead time predicts the future", column=1, hint="multiply by exp(-theta s) instead"
         )
+    if value.degree() > MAX_ORDER:
+        raise ParseError(f"the order exceeds the limit of {MAX_ORDER}", column=1)
     try:
         return TransferFunction(_roots(value.num), _roots(value.den), value.k, value.theta)
     except EngineError as error:

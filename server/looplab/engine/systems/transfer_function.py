@@ -11,7 +11,9 @@ import numpy.typing as npt
 from looplab.engine.errors import ImproperSystem, InvalidInput
 from looplab.engine.systems.polynomial import ComplexArray, FloatArray, from_roots, pair_conjugates, roots, trim
 
+# Of one system that is given; connections of several may have more.
 MAX_ORDER = 50
+MAX_CONNECTED_ORDER = 200
 
 
 class TransferFunction:
@@ -33,7 +35,7 @@ class TransferFunction:
     Raises
     ------
     InvalidInput
-        A value is not finite, theta is negative, roots are not in conjugate pairs, or the order exceeds 50.
+        A value is not finite, theta is negative, roots are not in conjugate pairs, or the order exceeds 200.
     """
 
     __slots__ = ("__dict__", "gain", "poles", "theta", "zeros")
@@ -59,8 +61,10 @@ class TransferFunction:
                 field="theta",
                 hint="dead time delays: write exp(-0.5 s), theta = 0.5",
             )
-        if max(z.size, p.size) > MAX_ORDER:
-            raise InvalidInput(f"order {max(z.size, p.size)} exceeds the limit of {MAX_ORDER}", field="poles")
+        if max(z.size, p.size) > MAX_CONNECTED_ORDER:
+            raise InvalidInput(
+                f"order {max(z.size, p.size)} exceeds the limit of {MAX_CONNECTED_ORDER}", field="poles"
+            )
         for name, value in (("zeros", z), ("poles", p)):
             value.setflags(write=False)
             object.__setattr__(self, name, value)

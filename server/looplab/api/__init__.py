@@ -1,0 +1,1 @@
+"""The REST API and the pages: FastAPI, thin routes over the engine."""

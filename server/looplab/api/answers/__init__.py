@@ -1,0 +1,1 @@
+"""Shapes of the answers, for the API's description; answers themselves are encoded by hand."""

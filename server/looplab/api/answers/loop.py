@@ -1,0 +1,239 @@
+"""The answer of POST /loop."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from looplab.api.answers.base import Answer, ComplexPair, Numbers, Reasons
+
+
+class SystemText(Answer):
+    """A system in words a person reads."""
+
+    text: str
+    latex: str
+    mathml: str
+
+
+class PlantText(SystemText):
+    """The plant, with its order and dead time [time]."""
+
+    order: int
+    theta: float
+
+
+class VerdictPanel(Answer):
+    """Stable, marginal or unstable; rhp_poles is null when there are infinitely many."""
+
+    key: str
+    verdict: Literal["stable", "marginal", "unstable"]
+    closed_loop_stable: bool
+    because: str
+    rhp_poles: int | None
+
+
+class StepResponse(Answer):
+    """y and u after a unit step; shorter than t where the response was cut."""
+
+    y: Numbers
+    u: Numbers
+    final_y: float | None
+    truncated_at: float | None
+    truncated_reason: str | None
+
+
+class StepPanel(Answer):
+    """Responses to unit steps of the setpoint and of the load at the plant input."""
+
+    key: str
+    horizon: float
+    t: Numbers
+    setpoint: StepResponse
+    load: StepResponse
+
+
+class BodeCurve(Answer):
+    """Magnitude [dB] and phase [deg], anchored at low frequency."""
+
+    mag_dB: Numbers
+    phase_deg: Numbers
+
+
+class BodePanel(Answer):
+    """Bode data over omega [rad/time]; a system that is zero is null."""
+
+    key: str
+    omega: Numbers
+    L: BodeCurve | None
+    P: BodeCurve | None
+    C: BodeCurve | None
+
+
+class NyquistPanel(Answer):
+    """L(j omega) for omega > 0, and Z = N + P; N and Z are null when infinite."""
+
+    key: str
+    omega: Numbers
+    re: Numbers
+    im: Numbers
+    N: int | None
+    P: int
+    Z: int | None
+    closed_loop_stable: bool
+    explanation: str
+
+
+class Branch(Answer):
+    """One branch of the locus."""
+
+    re: Numbers
+    im: Numbers
+
+
+class Asymptotes(Answer):
+    """Where the asymptotes meet and their directions [deg]."""
+
+    centroid: float | None
+    angles_deg: list[float]
+
+
+class BreakawayPoint(Answer):
+    """Branches meet at s for the gain K."""
+
+    s: ComplexPair
+    K: float
+
+
+class AxisCrossingPoint(Answer):
+    """A branch crosses the imaginary axis at j omega for the gain K."""
+
+    omega: float
+    K: float
+
+
+class View(Answer):
+    """A window that shows what matters."""
+
+    re: list[float]
+    im: list[float]
+
+
+class RootLocusPanel(Answer):
+    """Closed-loop poles over the controller's gain; only key, available and reason where it cannot be drawn."""
+
+    key: str
+    available: bool
+    reason: str | None
+    gains: Numbers | None = None
+    branches: list[Branch] | None = None
+    open_loop_poles: list[ComplexPair] | None = None
+    open_loop_zeros: list[ComplexPair] | None = None
+    asymptotes: Asymptotes | None = None
+    breakaways: list[BreakawayPoint] | None = None
+    imaginary_axis_crossings: list[AxisCrossingPoint] | None = None
+    view: View | None = None
+
+
+class PolesPanel(Answer):
+    """Closed-loop poles at the gain K."""
+
+    key: str
+    K: float
+    poles: list[ComplexPair]
+    complete: bool
+    reason: str | None
+
+
+class GainCrossoverPoint(Answer):
+    """|L| = 1."""
+
+    omega: float
+    PM_deg: float
+
+
+class PhaseCrossoverPoint(Answer):
+    """L real and negative."""
+
+    omega: float
+    GM: float
+
+
+class MarginsPanel(Answer):
+    """Margins; null with a reason when infinite or undefined."""
+
+    key: str
+    closed_loop_stable: bool
+    GM: float | None
+    GM_dB: float | None
+    omega_180: float | None
+    PM_deg: float | None
+    omega_c: float | None
+    delay_margin: float | None
+    Ms: float | None
+    omega_Ms: float | None
+    Mt: float | None
+    omega_Mt: float | None
+    gain_crossovers: list[GainCrossoverPoint]
+    phase_crossovers: list[PhaseCrossoverPoint]
+    reasons: Reasons
+
+
+class StepMetricsAnswer(Answer):
+    """Metrics of one step response; null with a reason when undefined."""
+
+    final_value: float | None
+    offset: float | None
+    overshoot_pct: float | None
+    peak: float | None
+    t_peak: float | None
+    t_rise: float | None
+    t_settle: float | None
+    decay_ratio: float | None
+    IAE: float | None
+    ISE: float | None
+    ITAE: float | None
+    TV: float | None
+    reasons: Reasons
+
+
+class MetricsPanel(Answer):
+    """Metrics of the setpoint and of the load step."""
+
+    key: str
+    setpoint: StepMetricsAnswer
+    load: StepMetricsAnswer
+
+
+class SensitivityPanel(Answer):
+    """The gang of four over omega [rad/time], magnitudes [dB]."""
+
+    key: str
+    omega: Numbers
+    S_dB: Numbers
+    T_dB: Numbers
+    PS_dB: Numbers
+    CS_dB: Numbers
+
+
+class LoopPanels(Answer):
+    """The panels that were asked for and have changed."""
+
+    verdict: VerdictPanel | None = None
+    step: StepPanel | None = None
+    bode: BodePanel | None = None
+    nyquist: NyquistPanel | None = None
+    root_locus: RootLocusPanel | None = None
+    poles: PolesPanel | None = None
+    margins: MarginsPanel | None = None
+    metrics: MetricsPanel | None = None
+    sensitivity: SensitivityPanel | None = None
+
+
+class LoopAnswer(Answer):
+    """Everything asked for about one loop."""
+
+    time_unit: str
+    plant: PlantText
+    controller: SystemText
+    unchanged: list[str]
+    panels: LoopPanels

@@ -1,0 +1,57 @@
+"""The application: the API under /api/v1, the pages beside it."""
+
+from __future__ import annotations
+
+import importlib.util
+
+from fastapi import APIRouter, FastAPI
+
+from looplab import __version__
+from looplab.api import errors, pages
+from looplab.api.limits import BodyLimit
+from looplab.api.routes import health, loop, tune
+from looplab.api.security import SecurityHeaders
+from looplab.api.settings import Settings
+
+DESCRIPTION = """Feedback loops with exact dead time: simulate, analyse, tune, grade.
+
+Names are the symbols of the field (Kc, tau_I, GM_dB, PM_deg, Ms ...); frequency is rad per time unit; a complex number
+is [re, im]. What is infinite or undefined is null, with the reason beside it. Every error has one shape."""
+
+
+def create_app(settings: Settings | None = None) -> FastAPI:
+    """Build the application.
+
+    Parameters
+    ----------
+    settings : Settings or None
+        None takes the defaults.
+
+    Returns
+    -------
+    FastAPI
+    """
+    settings = settings or Settings()
+    app = FastAPI(
+        title="looplab",
+        version=__version__,
+        description=DESCRIPTION,
+        openapi_url="/api/v1/openapi.json",
+        # The interactive pages would load scripts from another host.
+        docs_url=None,
+        redoc_url=None,
+    )
+    v1 = APIRouter(prefix="/api/v1")
+    for module in (health, loop, tune):
+        v1.include_router(module.router)
+    if importlib.util.find_spec("looplab.api.routes.labs") is not None:
+        from looplab.api.routes import labs
+
+        v1.include_router(labs.router)
+    app.include_router(v1)
+    errors.install(app)
+    if settings.pages:
+        pages.install(app)
+    app.add_middleware(BodyLimit, limit=settings.max_body)
+    app.add_middleware(SecurityHeaders)
+    return app

@@ -1,0 +1,38 @@
+"""Time-domain panels: the step responses and what they are judged by."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from looplab.api.panels.context import LoopContext
+from looplab.engine.loop import Response, step_metrics
+
+
+def _response(response: Response) -> dict[str, Any]:
+    return {
+        "y": response.y.copy(),
+        "u": response.u.copy(),
+        "final_y": response.final_y,
+        "truncated_at": response.truncated_at,
+        "truncated_reason": response.truncated_reason,
+    }
+
+
+def step(context: LoopContext) -> dict[str, Any]:
+    """y and u after unit steps of setpoint and load."""
+    result = context.step
+    setpoint, load = _response(result.setpoint), _response(result.load)
+    if not context.verdict.closed_loop_stable:
+        # The limits exist on paper only: this loop does not get there.
+        setpoint["final_y"] = load["final_y"] = None
+    return {"horizon": result.horizon, "t": result.t, "setpoint": setpoint, "load": load}
+
+
+def metrics(context: LoopContext) -> dict[str, Any]:
+    """Overshoot, rise, settling, offset, error integrals and effort, undefined ones with their reason."""
+    result, stable = context.step, context.verdict.closed_loop_stable
+    return {
+        "setpoint": asdict(step_metrics(result.setpoint, setpoint=1.0, stable=stable)),
+        "load": asdict(step_metrics(result.load, setpoint=0.0, stable=stable)),
+    }
