@@ -9,6 +9,7 @@ import orjson
 from pydantic import ValidationError
 
 from looplab.labs.problems import LabError, Problem, content_problems, schema_problems
+from looplab.labs.render import render_lab
 from looplab.labs.schema import Lab
 from looplab.resources import labs_dir
 
@@ -79,6 +80,7 @@ class Library:
     def __init__(self, folder: Path | None = None) -> None:
         self.folder = folder or default_folder()
         self._read: dict[str, tuple[tuple[int, int], Lab | LabError]] = {}
+        self._rendered: dict[str, tuple[tuple[int, int], dict[str, Any]]] = {}
 
     def get(self, lab_id: str) -> Lab | None:
         """The lab of this id, or None. Raises LabError where its file is not a lab."""
@@ -96,6 +98,16 @@ class Library:
             except LabError:
                 continue
         return labs
+
+    def rendered(self, lab_id: str) -> dict[str, Any]:
+        """A lab that `get` has found, as its page shows it; rendered once per edit."""
+        stamp, _ = self._read[lab_id]
+        known = self._rendered.get(lab_id)
+        if known is None or known[0] != stamp:
+            lab = self.get(lab_id)
+            assert lab is not None
+            known = self._rendered[lab_id] = (self._read[lab_id][0], render_lab(lab))
+        return known[1]
 
     def _load(self, path: Path) -> Lab:
         try:

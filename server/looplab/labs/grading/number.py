@@ -1,5 +1,6 @@
 """Grades numbers: each field against its own tolerance, with its own feedback."""
 
+from math import isfinite
 from typing import Any
 
 from looplab.engine.errors import InvalidInput
@@ -47,7 +48,7 @@ def _check(field: NumberField, given: Any, bench: Bench) -> Check:
     if _is_blank(given):
         return _failed(field, "Still empty.", "<p>Still empty.</p>")
     value = read_number(given, field.unit) if isinstance(given, str) else float(given)
-    if value is None:
+    if value is None or not isfinite(value):
         return _failed(
             field, "Not a number.", "<p>That cannot be read as a number. Type it like <code>1.73</code>.</p>"
         )
