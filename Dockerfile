@@ -4,7 +4,8 @@ WORKDIR /src
 COPY . .
 RUN pip wheel --quiet --no-deps --wheel-dir /dist . \
  && python -m venv --without-pip /opt/looplab \
- && pip --python /opt/looplab/bin/python install --quiet --no-cache-dir -c requirements.lock /dist/*.whl
+ && pip --python /opt/looplab/bin/python install --quiet --no-cache-dir -c requirements.lock /dist/*.whl \
+ && find /opt/looplab/lib -type d -name tests -prune -exec rm -rf {} +
 
 FROM python:3.13-slim
 RUN useradd --system --uid 10001 --no-create-home looplab
