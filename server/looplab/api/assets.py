@@ -9,7 +9,6 @@ the content, so that a browser may keep them for ever. A page names them by the 
 import gzip
 import hashlib
 import importlib.util
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -29,18 +28,26 @@ _SYSTEM_MATH_FONTS = ("Cambria Math", "STIX Two Math", "Latin Modern Math")
 _MATH_FAMILY = "Looplab Math"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Asset:
-    """A file of `/vendor/`: its address and how to get its bytes."""
+    """A file of `/vendor/`: its address and where its bytes are."""
 
     url: str
     media_type: str
-    read: Callable[[], bytes]
+    source: Path | bytes
 
     @classmethod
-    def of(cls, stem: str, suffix: str, media_type: str, read: Callable[[], bytes]) -> "Asset":
-        digest = hashlib.sha256(read()).hexdigest()[:16]
-        return cls(f"/vendor/{stem}-{digest}{suffix}", media_type, read)
+    def of(cls, stem: str, suffix: str, media_type: str, source: Path | bytes) -> "Asset":
+        """The asset under its hash; a file is hashed in pieces, which keeps megabytes out of the server's memory."""
+        if isinstance(source, bytes):
+            digest = hashlib.sha256(source)
+        else:
+            with source.open("rb") as file:
+                digest = hashlib.file_digest(file, "sha256")
+        return cls(f"/vendor/{stem}-{digest.hexdigest()[:16]}{suffix}", media_type, source)
+
+    def read(self) -> bytes:
+        return self.source if isinstance(self.source, bytes) else self.source.read_bytes()
 
 
 def plotly_js_path() -> Path:
@@ -91,14 +98,14 @@ def _assets() -> dict[str, Asset]:
     script = plotly_js_path()
     style = plotly_style_sheet(script.read_text(encoding="utf-8")).encode()
     assets = {
-        "plotly_js": Asset.of("plotly", ".js", "text/javascript; charset=utf-8", script.read_bytes),
-        "plotly_css": Asset.of("plotly", ".css", "text/css; charset=utf-8", lambda: style),
+        "plotly_js": Asset.of("plotly", ".js", "text/javascript; charset=utf-8", script),
+        "plotly_css": Asset.of("plotly", ".css", "text/css; charset=utf-8", style),
     }
     font = math_font_path()
     if font is not None:
-        assets["math_font_file"] = Asset.of("math", font.suffix, f"font/{font.suffix[1:]}", font.read_bytes)
+        assets["math_font_file"] = Asset.of("math", font.suffix, f"font/{font.suffix[1:]}", font)
     face = math_style_sheet(assets["math_font_file"].url if font is not None else None).encode()
-    assets["math_font"] = Asset.of("math", ".css", "text/css; charset=utf-8", lambda: face)
+    assets["math_font"] = Asset.of("math", ".css", "text/css; charset=utf-8", face)
     return assets
 
 
