@@ -1,0 +1,234 @@
+/**
+ * Shapes shared by the whole browser side; the names are those of the API.
+ * This file holds types only and runs nothing.
+ */
+
+/** @typedef {{type: "expr", text: string}} ExprSystem */
+/** @typedef {{type: "fopdt", K: number, tau: number, theta: number}} FopdtSystem */
+/** @typedef {{type: "sopdt", K: number, tau: number, zeta: number, theta: number}} SopdtSystem */
+/** @typedef {ExprSystem | FopdtSystem | SopdtSystem} System */
+
+/** @typedef {"P" | "PI" | "PD" | "PID"} ControllerType */
+/** @typedef {"ideal" | "series" | "parallel"} ControllerForm */
+
+/**
+ * What the student sets. `tau_I` and `tau_D` keep their values while the type leaves them out,
+ * so that switching PI -> P -> PI gives the old loop back.
+ * @typedef {object} ControllerState
+ * @property {ControllerType} type
+ * @property {ControllerForm} form
+ * @property {number} Kc
+ * @property {number} tau_I
+ * @property {number} tau_D
+ * @property {number} alpha
+ * @property {"reverse" | "direct"} action
+ */
+
+/**
+ * The design: everything undo brings back.
+ * @typedef {object} Design
+ * @property {System} plant
+ * @property {ControllerState} controller
+ * @property {number | null} horizon  time axis of the step responses; null lets the server choose
+ */
+
+/**
+ * How the student looks at it: travels in the URL, but is no step of undo.
+ * @typedef {object} View
+ * @property {"setpoint" | "load"} signal
+ * @property {string[]} show  plots on the stage, in order
+ */
+
+/** @typedef {Design & {view: View}} State */
+
+/** @typedef {Float32Array | Float64Array | number[]} Numbers */
+/** @typedef {[number, number]} Complex */
+
+/**
+ * @typedef {object} StepSignal
+ * @property {Numbers} y
+ * @property {Numbers} u
+ * @property {number | null} final_y
+ * @property {number | null} truncated_at
+ * @property {string | null} truncated_reason
+ */
+
+/** @typedef {{key: string, horizon: number, t: Numbers, setpoint: StepSignal, load: StepSignal}} StepPanel */
+/** @typedef {{mag_dB: Numbers, phase_deg: Numbers}} Response */
+/** @typedef {{key: string, omega: Numbers, L: Response, P: Response, C: Response}} BodePanel */
+
+/**
+ * @typedef {object} NyquistPanel
+ * @property {string} key
+ * @property {Numbers} omega
+ * @property {Numbers} re
+ * @property {Numbers} im
+ * @property {number | null} N
+ * @property {number | null} P
+ * @property {number | null} Z
+ * @property {boolean} closed_loop_stable
+ * @property {string} explanation
+ */
+
+/**
+ * @typedef {object} RootLocusPanel
+ * @property {string} key
+ * @property {boolean} available
+ * @property {string | null} reason
+ * @property {number | null} K_now
+ * @property {Numbers} gains
+ * @property {{re: Numbers, im: Numbers}[]} branches
+ * @property {Complex[]} open_loop_poles
+ * @property {Complex[]} open_loop_zeros
+ * @property {{centroid: number | null, angles_deg: number[]}} asymptotes
+ * @property {{s: Complex, K: number}[]} breakaways
+ * @property {{omega: number, K: number}[]} imaginary_axis_crossings
+ * @property {{re: Complex, im: Complex}} view
+ */
+
+/** @typedef {{key: string, poles: Complex[], complete: boolean, reason: string | null}} PolesPanel */
+
+/**
+ * @typedef {object} MarginsPanel
+ * @property {string} key
+ * @property {boolean} closed_loop_stable
+ * @property {number | null} GM
+ * @property {number | null} GM_dB
+ * @property {number | null} omega_180
+ * @property {number | null} PM_deg
+ * @property {number | null} omega_c
+ * @property {number | null} delay_margin
+ * @property {number | null} Ms
+ * @property {number | null} omega_Ms
+ * @property {number | null} Mt
+ * @property {number | null} omega_Mt
+ * @property {{omega: number, PM_deg: number}[]} gain_crossovers
+ * @property {{omega: number, GM: number}[]} phase_crossovers
+ * @property {Record<string, string>} reasons
+ */
+
+/** @typedef {{[field: string]: number | null}} MetricValues */
+/** @typedef {{reasons: Record<string, string>}} MetricReasons */
+/** @typedef {{key: string, setpoint: Metrics, load: Metrics}} MetricsPanel */
+
+/**
+ * @typedef {object} Metrics
+ * @property {number | null} final_value
+ * @property {number | null} offset
+ * @property {number | null} overshoot_pct
+ * @property {number | null} t_peak
+ * @property {number | null} peak
+ * @property {number | null} t_rise
+ * @property {number | null} t_settle
+ * @property {number | null} decay_ratio
+ * @property {number | null} IAE
+ * @property {number | null} ISE
+ * @property {number | null} ITAE
+ * @property {number | null} TV
+ * @property {Record<string, string>} reasons
+ */
+
+/**
+ * @typedef {object} VerdictPanel
+ * @property {string} key
+ * @property {"stable" | "marginal" | "unstable"} verdict
+ * @property {boolean} closed_loop_stable
+ * @property {string} because
+ * @property {number} rhp_poles
+ */
+
+/** @typedef {{key: string, omega: Numbers, S_dB: Numbers, T_dB: Numbers, PS_dB: Numbers, CS_dB: Numbers}} SensitivityPanel */
+
+/**
+ * @typedef {object} Panels
+ * @property {VerdictPanel} [verdict]
+ * @property {StepPanel} [step]
+ * @property {BodePanel} [bode]
+ * @property {NyquistPanel} [nyquist]
+ * @property {RootLocusPanel} [root_locus]
+ * @property {PolesPanel} [poles]
+ * @property {MarginsPanel} [margins]
+ * @property {MetricsPanel} [metrics]
+ * @property {SensitivityPanel} [sensitivity]
+ */
+
+/** @typedef {keyof Panels} PanelName */
+
+/** @typedef {{text: string, latex: string, mathml: string, order?: number, theta?: number}} SystemText */
+
+/**
+ * @typedef {object} LoopAnswer
+ * @property {string} time_unit
+ * @property {SystemText} plant
+ * @property {SystemText} controller
+ * @property {PanelName[]} unchanged
+ * @property {Panels} panels
+ */
+
+/**
+ * @typedef {object} TuneSetting
+ * @property {string} rule
+ * @property {string} name
+ * @property {"P" | "PI" | "PID"} type
+ * @property {number | null} Kc
+ * @property {number | null} tau_I
+ * @property {number | null} tau_D
+ * @property {number | null} alpha
+ * @property {boolean} valid
+ * @property {string | null} reason
+ * @property {{latex: string, mathml: string} | null} formula
+ * @property {string} source
+ */
+
+/**
+ * @typedef {object} TuneAnswer
+ * @property {TuneSetting[]} settings
+ * @property {{Ku: number | null, Pu: number | null, omega_180: number | null, reason: string | null} | null} ultimate
+ * @property {{K: number, tau: number, theta: number, how: string} | null} model
+ */
+
+/** @typedef {{id: string, title: string, level: string, section: string, summary: string, minutes: number, exercises: number}} LabSummary */
+
+/**
+ * Colours and type a plot is drawn with, read from the style tokens by the page.
+ * @typedef {object} Theme
+ * @property {string} ink
+ * @property {string} muted
+ * @property {string} grid
+ * @property {string} axis
+ * @property {string} paper
+ * @property {string} good
+ * @property {string} bad
+ * @property {string} font
+ * @property {number} fontSize
+ * @property {Record<string, string>} signal
+ */
+
+/**
+ * One Plotly trace; only the fields that plots/ uses.
+ * @typedef {object} Trace
+ * @property {string} type
+ * @property {"lines" | "markers" | "lines+markers"} mode
+ * @property {string} name
+ * @property {Numbers | (number | null)[]} x
+ * @property {Numbers | (number | null)[]} y
+ * @property {string} [xaxis]
+ * @property {string} [yaxis]
+ * @property {object} [line]
+ * @property {object} [marker]
+ * @property {string} [hovertemplate]
+ * @property {"skip" | "all"} [hoverinfo]
+ * @property {boolean} [showlegend]
+ * @property {number} [opacity]
+ * @property {string} [fill]
+ * @property {string} [fillcolor]
+ * @property {boolean} [cliponaxis]
+ */
+
+/** @typedef {[number, number]} Range */
+/** @typedef {Record<string, Range>} Ranges  axis ranges by axis name; log axes in powers of ten, as Plotly has them */
+/** @typedef {{traces: Trace[], layout: Record<string, any>, ranges: Ranges}} Figure */
+
+/** @typedef {{header: string[], rows: (string | number | null)[][]}} Table */
+
+export {};

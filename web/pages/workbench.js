@@ -1,0 +1,140 @@
+/** The workbench: which panels in which order, and the state in the address bar. */
+
+/** @import {Api} from "../core/api.js" */
+/** @import {Store} from "../core/store.js" */
+
+import { createApi } from "../core/api.js";
+import { PLOT_IDS, SHOWN_NARROW, SHOWN_WIDE } from "../core/plots.js";
+import { defaultState } from "../core/presets.js";
+import { startSession } from "../core/session.js";
+import { createStore } from "../core/store.js";
+import { fromQuery, toQuery } from "../core/url.js";
+import "../components/site-header.js";
+import { toast } from "../components/status-toast.js";
+import * as actionsBar from "../panels/actions-bar.js";
+import * as bode from "../panels/bode.js";
+import * as controllerCard from "../panels/controller-card.js";
+import * as loopDiagram from "../panels/loop-diagram.js";
+import * as numbers from "../panels/numbers.js";
+import * as nyquist from "../panels/nyquist.js";
+import * as plantCard from "../panels/plant-card.js";
+import * as rootLocus from "../panels/root-locus.js";
+import * as sensitivity from "../panels/sensitivity.js";
+import * as step from "../panels/step.js";
+import * as testCard from "../panels/test-card.js";
+import * as tuneCard from "../panels/tune-card.js";
+import * as verdictBar from "../panels/verdict-bar.js";
+import * as viewBar from "../panels/view-bar.js";
+
+/** @typedef {(host: HTMLElement, store: Store, api: Api) => () => void} Mount */
+
+/** @type {Record<string, Mount>} */
+const STAGE = { step: step.mount, bode: bode.mount, nyquist: nyquist.mount, root_locus: rootLocus.mount, sensitivity: sensitivity.mount, numbers: numbers.mount };
+
+const NARROW = matchMedia("(max-width: 63.99rem)");
+
+/** @param {string} id @returns {HTMLElement} */
+function place(id) {
+  const element = document.getElementById(id);
+  if (!element) throw new Error(`the page has no #${id}`);
+  return element;
+}
+
+const api = createApi();
+const fallback = defaultState();
+const initial = fromQuery(location.search, fallback, PLOT_IDS);
+const chosen = initial.view.show.length > 0;
+const store = createStore({ ...initial, view: { ...initial.view, show: chosen ? initial.view.show : NARROW.matches ? SHOWN_NARROW : SHOWN_WIDE } });
+
+/** Whether the plots on the stage were picked, or are only what fits. */
+let picked = chosen;
+
+verdictBar.mount(place("verdict"), store, api);
+const rail = place("rail");
+loopDiagram.mount(rail, store, api);
+// On a narrow page the sliders should be the first thing under the plot.
+plantCard.mount(rail, store, api, { open: !NARROW.matches });
+for (const panel of [controllerCard, tuneCard, testCard]) panel.mount(rail, store, api);
+viewBar.mount(place("views"), store, api, { narrow: () => NARROW.matches });
+actionsBar.mount(place("actions"), store, api);
+
+const stage = place("stage");
+/** @type {Map<string, {host: HTMLElement, dispose: () => void}>} */
+const mounted = new Map();
+/** What was on the stage before one plot was enlarged. @type {string[] | null} */
+let before = null;
+
+function layOut() {
+  const { show } = store.get().view;
+  for (const [id, { host, dispose }] of mounted) {
+    if (show.includes(id)) continue;
+    dispose();
+    host.remove();
+    mounted.delete(id);
+  }
+  for (const id of PLOT_IDS) {
+    const mount = STAGE[id];
+    if (!show.includes(id) || mounted.has(id) || !mount) continue;
+    const host = document.createElement("div");
+    host.className = "slot";
+    host.dataset["plot"] = id;
+    const next = PLOT_IDS.slice(PLOT_IDS.indexOf(id) + 1).map((name) => mounted.get(name)?.host).find(Boolean);
+    stage.insertBefore(host, next ?? null);
+    mounted.set(id, { host, dispose: mount(host, store, api) });
+  }
+  const plots = show.filter((id) => id !== "numbers").length;
+  stage.dataset["plots"] = String(plots);
+  document.body.classList.toggle("one-plot", show.length === 1);
+}
+
+stage.addEventListener("panel-expand", (event) => {
+  const { id } = /** @type {CustomEvent<{id: string}>} */ (event).detail;
+  const { show } = store.get().view;
+  const alone = show.length === 1;
+  const next = alone ? (before ?? SHOWN_WIDE) : [id];
+  before = alone ? null : show;
+  store.setView({ show: next });
+  document.querySelector(`#panel-${id} .expand`)?.scrollIntoView({ block: "nearest" });
+});
+
+let writing = 0;
+function writeUrl() {
+  clearTimeout(writing);
+  const state = store.get();
+  const view = picked ? state.view : { ...state.view, show: [] };
+  history.replaceState(null, "", `?${toQuery({ ...state, view })}`);
+}
+
+store.subscribe((_, change) => {
+  if (change.view) {
+    const shown = [...mounted.keys()].toSorted().join();
+    layOut();
+    if (shown !== [...mounted.keys()].toSorted().join()) picked = true;
+  }
+  // Browsers limit how often an address may be rewritten.
+  clearTimeout(writing);
+  if (!change.moving) writing = window.setTimeout(writeUrl, 150);
+});
+
+NARROW.addEventListener("change", () => {
+  if (picked) return;
+  store.setView({ show: NARROW.matches ? SHOWN_NARROW : SHOWN_WIDE });
+  picked = false;
+});
+
+addEventListener("popstate", () => {
+  const state = fromQuery(location.search, fallback, PLOT_IDS);
+  store.set({ plant: state.plant, controller: state.controller, horizon: state.horizon });
+});
+
+layOut();
+
+let troubled = false;
+startSession(store, api, {
+  onStatus(status, error) {
+    if (status === "waiting") toast().say(`${error.message} Trying again…`, { lasting: true });
+    else if (status === "error" && !String(error.path ?? "").includes("plant")) toast().say([error.message, error.hint].filter(Boolean).join(" "), { lasting: true });
+    else if (troubled) toast().hush();
+    troubled = status !== "ok" && !(status === "error" && String(error.path ?? "").includes("plant"));
+  },
+});

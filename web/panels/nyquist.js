@@ -1,0 +1,50 @@
+/** Nyquist plot, with the count Z = N + P written out. */
+
+/** @import {Api} from "../core/api.js" */
+/** @import {Store} from "../core/store.js" */
+
+import { PLOT_HELP } from "../core/explain.js";
+import { formatNumber } from "../core/format.js";
+import { h } from "../components/dom.js";
+import { mountPlotPanel } from "../components/plot-panel.js";
+import "../components/segmented-control.js";
+import { createFigure } from "../plots/figure.js";
+import { nyquistPlot } from "../plots/nyquist.js";
+
+/** @param {HTMLElement} host @param {Store} store @param {Api} _api @returns {() => void} */
+export function mount(host, store, _api) {
+  const { answers } = store;
+  const choice = h("segmented-control", { label: "Part of the curve", class: "small" });
+  choice.options = [
+    { value: "near", label: "Near −1", title: "The neighbourhood of −1, where stability is decided" },
+    { value: "whole", label: "Whole", title: "The whole curve" },
+  ];
+  choice.value = "near";
+
+  const panel = mountPlotPanel(host, store, {
+    id: "nyquist",
+    title: "Nyquist",
+    help: /** @type {string} */ (PLOT_HELP["nyquist"]),
+    wants: ["nyquist", "margins"],
+    figure: createFigure,
+    controls: [choice],
+    draw(theme, held) {
+      const { nyquist, margins } = answers.panels;
+      if (!nyquist) return null;
+      const ghosts = store.snapshots.flatMap(({ panels }) => panels.nyquist ?? []);
+      return nyquistPlot({ nyquist, margins: margins ?? null, whole: choice.value === "whole", ghosts }, theme, held);
+    },
+    note: () => answers.panels.nyquist?.explanation ?? "",
+    table() {
+      const nyquist = answers.panels.nyquist;
+      if (!nyquist) return null;
+      return {
+        header: [`ω [rad/${answers.time_unit}]`, "Re L", "Im L"],
+        rows: Array.from(nyquist.omega, (w, i) => [w, nyquist.re[i] ?? null, nyquist.im[i] ?? null]),
+      };
+    },
+    describe: () => `Nyquist curve of the open loop: ${answers.panels.nyquist?.explanation ?? ""} Gain margin ${formatNumber(answers.panels.margins?.GM)}.`,
+  });
+  choice.addEventListener("value-change", () => panel.redraw({ refit: true }));
+  return panel.dispose;
+}

@@ -1,0 +1,166 @@
+/** The plant: typed as an expression, set as a simple model, or picked from a list. */
+
+/** @import {Api} from "../core/api.js" */
+/** @import {Store} from "../core/store.js" */
+/** @import {System} from "../core/types.js" */
+
+import { PRESETS } from "../core/presets.js";
+import { createCard } from "../components/card.js";
+import { h, set, setText } from "../components/dom.js";
+import "../components/gain-slider.js";
+import { icon } from "../components/icons.js";
+import { showMath } from "../components/mathml.js";
+import { attachMenu } from "../components/menu.js";
+import "../components/segmented-control.js";
+import { toast } from "../components/status-toast.js";
+
+const TYPING_MS = 250;
+const MAX_TEXT = 500;
+
+/** @type {Record<"fopdt" | "sopdt", {name: string, min: number, max: number, linear?: boolean}[]>} */
+const MODEL = {
+  fopdt: [
+    { name: "K", min: 0.1, max: 10 },
+    { name: "tau", min: 0.05, max: 50 },
+    { name: "theta", min: 0, max: 5, linear: true },
+  ],
+  sopdt: [
+    { name: "K", min: 0.1, max: 10 },
+    { name: "tau", min: 0.05, max: 50 },
+    { name: "zeta", min: 0, max: 2, linear: true },
+    { name: "theta", min: 0, max: 5, linear: true },
+  ],
+};
+
+/** @type {Record<"fopdt" | "sopdt", System>} */
+const START = { fopdt: { type: "fopdt", K: 1, tau: 3, theta: 1 }, sopdt: { type: "sopdt", K: 1, tau: 1, zeta: 0.5, theta: 0 } };
+
+/**
+ * @param {HTMLElement} host
+ * @param {Store} store
+ * @param {Api} _api
+ * @param {{open?: boolean}} [options]
+ * @returns {() => void}
+ */
+export function mount(host, store, _api, { open = true } = {}) {
+  const { answers } = store;
+  const card = createCard(host, { id: "card-plant", title: "Plant", open });
+  const math = h("div", { class: "math-display" });
+  const kind = h("segmented-control", { label: "Plant given as" });
+  kind.options = [
+    { value: "expr", label: "Expression", title: "Any transfer function in s" },
+    { value: "fopdt", label: "1st order", title: "First order with dead time" },
+    { value: "sopdt", label: "2nd order", title: "Second order with dead time" },
+  ];
+
+  const input = h("input", { type: "text", id: "plant-text", class: "expression", maxlength: MAX_TEXT, autocomplete: "off", autocapitalize: "off", spellcheck: "false", "aria-describedby": "plant-error plant-hint" });
+  const caret = h("span", { class: "caret-line", "aria-hidden": "true" });
+  const error = h("p", { class: "field-message", id: "plant-error", role: "alert" });
+  const hint = h("p", { class: "field-hint", id: "plant-hint" }, "Like (s+3)/(s^2 (s+2)) exp(-0.1 s)");
+  const expression = h("div", { class: "expression-field" }, h("label", { for: "plant-text" }, h("i", {}, "P"), "(s) ="), h("div", { class: "expression-box" }, input, caret), error, hint);
+  const model = h("div", { class: "knobs" });
+  const presets = h("button", { type: "button", class: "button", "aria-label": "Pick a plant" }, "Pick", icon("chevron"));
+  card.body.append(math, h("div", { class: "row spread" }, kind, h("span", { class: "menu-holder" }, presets)), expression, model);
+
+  /** @type {Map<string, import("../components/gain-slider.js").GainSlider>} */
+  const knobs = new Map();
+  let built = "";
+  let typing = 0;
+  let typed = "";
+
+  const groups = [...new Set(PRESETS.map(({ group }) => group))];
+  attachMenu(
+    presets,
+    groups.flatMap((group) => [
+      { heading: group },
+      ...PRESETS.filter((preset) => preset.group === group).map(({ name, teaches, plant, controller }) => ({
+        label: name,
+        detail: teaches,
+        run() {
+          store.set({ plant, controller: { ...store.get().controller, form: "ideal", action: "reverse", ...controller }, horizon: null });
+          toast().say(`${name}: plant and a first controller are set.`, { action: { label: "Undo", run: () => store.undo() } });
+        },
+      })),
+    ]),
+  );
+
+  kind.addEventListener("value-change", () => {
+    const { plant } = store.get();
+    if (kind.value === plant.type) return;
+    if (kind.value === "expr") store.set({ plant: { type: "expr", text: answers.plant?.text || "1/(s+1)" } });
+    else store.set({ plant: START[kind.value === "fopdt" ? "fopdt" : "sopdt"] });
+  });
+
+  function commit() {
+    clearTimeout(typing);
+    if (input.value === typed) return;
+    typed = input.value;
+    store.set({ plant: { type: "expr", text: input.value } });
+  }
+  input.addEventListener("input", () => {
+    clearTimeout(typing);
+    typing = window.setTimeout(commit, TYPING_MS);
+  });
+  input.addEventListener("change", commit);
+
+  /** @param {"fopdt" | "sopdt"} type */
+  function build(type) {
+    if (built === type) return;
+    built = type;
+    knobs.clear();
+    model.replaceChildren(
+      ...MODEL[type].map(({ name, min, max, linear }) => {
+        const knob = h("gain-slider", { name, min, max, linear: linear ?? false, unit: name === "tau" || name === "theta" ? answers.time_unit : null });
+        const take = (/** @type {boolean} */ moving) => (/** @type {Event} */ event) => {
+          const { value } = /** @type {CustomEvent<{value: number}>} */ (event).detail;
+          store.set({ plant: /** @type {System} */ ({ ...store.get().plant, [name]: value }) }, { moving });
+        };
+        knob.addEventListener("value-input", take(true));
+        knob.addEventListener("value-change", take(false));
+        knobs.set(name, knob);
+        return knob;
+      }),
+    );
+  }
+
+  function showPlant() {
+    const { plant } = store.get();
+    kind.value = plant.type;
+    expression.hidden = plant.type !== "expr";
+    model.hidden = plant.type === "expr";
+    if (plant.type === "expr") {
+      if (plant.text !== typed || document.activeElement !== input) {
+        typed = plant.text;
+        if (input.value !== plant.text) input.value = plant.text;
+      }
+      card.summarise(plant.text);
+    } else {
+      build(plant.type);
+      for (const [name, knob] of knobs) knob.value = /** @type {Record<string, any>} */ (plant)[name];
+      card.summarise(plant.type === "fopdt" ? "first order with dead time" : "second order with dead time");
+    }
+  }
+
+  function showAnswer() {
+    const wrong = answers.error;
+    const mine = wrong && (wrong.path === null || wrong.path === undefined || String(wrong.path).includes("plant"));
+    showMath(math, answers.plant?.mathml);
+    math.classList.toggle("stale", Boolean(mine));
+    set(input, { "aria-invalid": mine ? "true" : null });
+    setText(error, mine ? [wrong.message, wrong.hint].filter(Boolean).join(" ") : "");
+    const column = mine ? (wrong.column ?? null) : null;
+    setText(caret, column === null ? "" : `${"\u00a0".repeat(Math.max(0, column - 1))}▲`);
+    hint.hidden = Boolean(mine);
+  }
+
+  const stopStore = store.subscribe(showPlant);
+  const stopAnswers = answers.subscribe(showAnswer);
+  showPlant();
+  showAnswer();
+  return () => {
+    clearTimeout(typing);
+    stopStore();
+    stopAnswers();
+    card.root.remove();
+  };
+}

@@ -1,0 +1,136 @@
+/** Nyquist plot: L(iω) and its mirror, the point −1, the unit circle, and the direction of growing ω. */
+
+/** @import {Figure, MarginsPanel, NyquistPanel, Range, Theme, Trace} from "../core/types.js" */
+/** @import {Held} from "./axes.js" */
+
+import { axis, baseLayout, extent, holdRange } from "./axes.js";
+import { ghostLine, lineOf } from "./signals.js";
+
+/** What matters happens about −1; a curve that comes from far away (an integrator, a high gain) is cut here. */
+const NEAR = 1.6;
+const CIRCLE = Array.from({ length: 121 }, (_, i) => (i * Math.PI) / 60);
+
+/**
+ * @typedef {object} NyquistInput
+ * @property {NyquistPanel} nyquist
+ * @property {MarginsPanel | null} margins
+ * @property {boolean} whole  the whole curve instead of the neighbourhood of −1
+ * @property {NyquistPanel[]} ghosts
+ */
+
+/**
+ * @param {NyquistInput} input
+ * @param {Theme} theme
+ * @param {Held} held
+ * @returns {Figure}
+ */
+export function nyquistPlot({ nyquist, margins, whole, ghosts }, theme, held) {
+  const { re, im } = nyquist;
+  const mirrored = Float64Array.from(im, (value) => -value);
+  const line = lineOf("L", theme);
+  const box = windowOf(nyquist, whole);
+  const ranges = {
+    xaxis: holdRange(held, "xaxis", box.re[0], box.re[1]),
+    yaxis: holdRange(held, "yaxis", box.im[0], box.im[1]),
+  };
+  const size = 0.03 * (ranges.yaxis[1] - ranges.yaxis[0]);
+  const hover = "L = %{x:.4~g} %{y:+.4~g} i";
+
+  /** @type {Trace[]} */
+  const traces = [
+    {
+      type: "scatter",
+      mode: "lines",
+      name: "unit circle",
+      x: CIRCLE.map(Math.cos),
+      y: CIRCLE.map(Math.sin),
+      line: { color: theme.axis, width: 1.25, dash: "dash" },
+      hoverinfo: "skip",
+    },
+    ...ghosts.map((ghost) => /** @type {Trace} */ ({ type: "scatter", mode: "lines", name: "kept L", x: ghost.re, y: ghost.im, line: ghostLine(theme), hoverinfo: "skip" })),
+    { type: "scatter", mode: "lines", name: "ω < 0", x: re, y: mirrored, line: { ...line, width: 1.25, dash: "dash" }, hoverinfo: "skip" },
+    { type: "scatter", mode: "lines", name: "ω > 0", x: re, y: im, line, hovertemplate: `${hover}<extra></extra>` },
+    arrow(nyquist, ranges, size, 1, line.color),
+    arrow(nyquist, ranges, size, -1, line.color),
+    crossings(margins, theme),
+    {
+      type: "scatter",
+      mode: "markers",
+      name: "−1",
+      x: [-1],
+      y: [0],
+      marker: { symbol: "cross-thin", size: 15, line: { color: theme.bad, width: 3 } },
+      hovertemplate: "the point −1<extra></extra>",
+    },
+  ];
+  return {
+    traces,
+    ranges,
+    layout: {
+      ...baseLayout(theme),
+      xaxis: axis(theme, "Re L", ranges.xaxis),
+      // One scale on both axes: the unit circle is a circle, and an angle is an angle.
+      yaxis: axis(theme, "Im L", ranges.yaxis, { scaleanchor: "x", scaleratio: 1 }),
+    },
+  };
+}
+
+/** @param {NyquistPanel} nyquist @param {boolean} whole @returns {{re: Range, im: Range}} */
+function windowOf({ re, im }, whole) {
+  /** @type {number[]} */
+  const shown = [];
+  for (let i = 0; i < re.length; i++) {
+    const size = Math.hypot(re[i] ?? 0, im[i] ?? 0);
+    if (whole || size <= NEAR) shown.push(i);
+  }
+  const pick = (/** @type {import("../core/types.js").Numbers} */ values) => shown.map((i) => values[i] ?? 0);
+  const reach = Math.max(...extent(pick(im).map(Math.abs), [1]));
+  return { re: extent(pick(re), [-1.5, 1]), im: [-reach, reach] };
+}
+
+/**
+ * A chevron on the curve where it passes through the middle of what is shown.
+ * @param {NyquistPanel} nyquist
+ * @param {{xaxis: Range, yaxis: Range}} ranges
+ * @param {number} size
+ * @param {1 | -1} side  1 for ω > 0, −1 for its mirror, which runs the other way
+ * @param {string} color
+ * @returns {Trace}
+ */
+function arrow({ re, im }, ranges, size, side, color) {
+  /** @type {Trace} */
+  const trace = { type: "scatter", mode: "lines", name: "direction", x: [], y: [], line: { color, width: 2.25 }, hoverinfo: "skip" };
+  // A little outside the unit circle the arrow is in sight, and off −1 and the margins.
+  let best = -1;
+  let miss = Infinity;
+  for (let i = 1; i < re.length - 1; i++) {
+    const [x, y] = [re[i] ?? 0, im[i] ?? 0];
+    if (x < ranges.xaxis[0] || x > ranges.xaxis[1] || y < ranges.yaxis[0] || y > ranges.yaxis[1]) continue;
+    const distance = Math.abs(Math.hypot(x, y) - 1.25);
+    if (distance < miss) [best, miss] = [i, distance];
+  }
+  if (best < 0) return trace;
+  const [x, y] = [re[best] ?? 0, side * (im[best] ?? 0)];
+  const dx = side * ((re[best + 1] ?? 0) - (re[best - 1] ?? 0));
+  const dy = (im[best + 1] ?? 0) - (im[best - 1] ?? 0);
+  const length = Math.hypot(dx, dy) || 1;
+  const [ux, uy] = [(dx / length) * size, (dy / length) * size];
+  trace.x = [x - ux - 0.6 * uy, x + ux * 0.6, x - ux + 0.6 * uy];
+  trace.y = [y - uy + 0.6 * ux, y + uy * 0.6, y - uy - 0.6 * ux];
+  return trace;
+}
+
+/** @param {MarginsPanel | null} margins @param {Theme} theme @returns {Trace} */
+function crossings(margins, theme) {
+  const angle = margins?.PM_deg != null ? ((margins.PM_deg - 180) * Math.PI) / 180 : null;
+  const color = theme.signal["margin"] ?? theme.ink;
+  return {
+    type: "scatter",
+    mode: "markers",
+    name: "margins",
+    x: [margins?.GM != null ? -1 / margins.GM : null, angle === null ? null : Math.cos(angle)],
+    y: [margins?.GM != null ? 0 : null, angle === null ? null : Math.sin(angle)],
+    marker: { symbol: "circle", size: 9, color: theme.paper, line: { color, width: 2 } },
+    hovertemplate: "L = %{x:.4~g} %{y:+.4~g} i<extra></extra>",
+  };
+}

@@ -1,0 +1,45 @@
+/**
+ * One colour and one dash for each signal, everywhere. Colours are style tokens `--signal-<name>`, chosen for
+ * colour-blind eyes in light and dark; the dash tells them apart without colour.
+ */
+
+/** @import {Theme} from "../core/types.js" */
+
+/**
+ * @typedef {object} Signal
+ * @property {string} label
+ * @property {string} name
+ * @property {"solid" | "dash" | "dot" | "dashdot" | "longdash"} dash
+ * @property {number} width
+ */
+
+/** @type {Record<string, Signal>} */
+export const SIGNALS = {
+  r: { label: "r", name: "setpoint", dash: "dash", width: 1.5 },
+  y: { label: "y", name: "process output", dash: "solid", width: 2.5 },
+  u: { label: "u", name: "controller output", dash: "solid", width: 2 },
+  d: { label: "d", name: "load disturbance", dash: "dashdot", width: 2 },
+  n: { label: "n", name: "measurement noise", dash: "dot", width: 1.5 },
+  e: { label: "e", name: "error", dash: "longdash", width: 1.5 },
+  L: { label: "L", name: "open loop", dash: "solid", width: 2.5 },
+  P: { label: "P", name: "plant", dash: "dash", width: 1.75 },
+  C: { label: "C", name: "controller", dash: "dot", width: 2 },
+  S: { label: "S", name: "sensitivity", dash: "solid", width: 2.25 },
+  PS: { label: "PS", name: "load to output", dash: "dashdot", width: 1.75 },
+  CS: { label: "CS", name: "noise to controller output", dash: "dot", width: 2 },
+  T: { label: "T", name: "complementary sensitivity", dash: "longdash", width: 2.25 },
+};
+
+/**
+ * @param {keyof typeof SIGNALS} signal
+ * @param {Theme} theme
+ */
+export function lineOf(signal, theme) {
+  const { dash, width } = /** @type {Signal} */ (SIGNALS[signal]);
+  return { color: theme.signal[signal] ?? theme.ink, dash, width };
+}
+
+/** The line of a kept response: the same dash, thinner and grey, so that the live one stands out. @param {Theme} theme */
+export function ghostLine(theme) {
+  return { color: theme.muted, dash: "solid", width: 1.25 };
+}
