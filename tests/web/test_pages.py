@@ -2,8 +2,11 @@
 
 from html.parser import HTMLParser
 from pathlib import Path
+from urllib.error import HTTPError
 
 import pytest
+
+from serving import read
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PAGES = sorted((REPOSITORY / "web").glob("*.html"))
@@ -75,3 +78,15 @@ def test_a_page_with_plotly_links_its_style_as_plotly_looks_for_it(page):
         link = next(link for link in page.all("link") if link.get("href") == "{{plotly_css}}")
         assert link.get("id") == "plotly.js-style-global"
         assert "no-inline-styles" in (link.get("class") or "").split()
+
+
+def test_links_of_a_page_are_answered(page, server_url):
+    targets = {link.get("href") or "" for link in page.all("a")}
+    broken = []
+    for target in sorted(target.split("#")[0] for target in targets if target.startswith("/")):
+        try:
+            read(server_url + target)
+        except HTTPError as error:
+            error.close()
+            broken.append(f"{target}: {error.code}")
+    assert broken == []
