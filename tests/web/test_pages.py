@@ -38,7 +38,7 @@ class Page(HTMLParser):
 
 
 @pytest.fixture(params=PAGES, ids=lambda path: path.name)
-def page(request):
+def html(request):
     return Page(request.param.read_text(encoding="utf-8"))
 
 
@@ -46,23 +46,23 @@ def test_there_are_pages():
     assert {path.name for path in PAGES} >= {"index.html", "workbench.html", "lab.html"}
 
 
-def test_a_page_names_itself_and_its_language(page):
-    assert page.title.strip()
-    assert page.all("html")[0].get("lang") == "en"
-    assert any(meta.get("name") == "viewport" for meta in page.all("meta"))
-    assert len(page.all("main")) == 1
+def test_a_page_names_itself_and_its_language(html):
+    assert html.title.strip()
+    assert html.all("html")[0].get("lang") == "en"
+    assert any(meta.get("name") == "viewport" for meta in html.all("meta"))
+    assert len(html.all("main")) == 1
 
 
-def test_nothing_inline_that_the_policy_forbids(page):
-    assert all(script.get("src") for script in page.all("script")), "a script without src"
-    assert page.all("style") == [], "a style element"
-    handlers = [name for _, attributes in page.tags for name in attributes if name.startswith("on")]
+def test_nothing_inline_that_the_policy_forbids(html):
+    assert all(script.get("src") for script in html.all("script")), "a script without src"
+    assert html.all("style") == [], "a style element"
+    handlers = [name for _, attributes in html.tags for name in attributes if name.startswith("on")]
     assert handlers == []
 
 
-def test_what_a_page_loads_is_a_file_or_a_placeholder(page):
-    for reference in [script.get("src") for script in page.all("script")] + [
-        link.get("href") for link in page.all("link")
+def test_what_a_page_loads_is_a_file_or_a_placeholder(html):
+    for reference in [script.get("src") for script in html.all("script")] + [
+        link.get("href") for link in html.all("link")
     ]:
         assert reference is not None
         if reference.startswith("/static/"):
@@ -73,15 +73,15 @@ def test_what_a_page_loads_is_a_file_or_a_placeholder(page):
             )
 
 
-def test_a_page_with_plotly_links_its_style_as_plotly_looks_for_it(page):
-    if any(script.get("src") == "{{plotly_js}}" for script in page.all("script")):
-        link = next(link for link in page.all("link") if link.get("href") == "{{plotly_css}}")
+def test_a_page_with_plotly_links_its_style_as_plotly_looks_for_it(html):
+    if any(script.get("src") == "{{plotly_js}}" for script in html.all("script")):
+        link = next(link for link in html.all("link") if link.get("href") == "{{plotly_css}}")
         assert link.get("id") == "plotly.js-style-global"
         assert "no-inline-styles" in (link.get("class") or "").split()
 
 
-def test_links_of_a_page_are_answered(page, server_url):
-    targets = {link.get("href") or "" for link in page.all("a")}
+def test_links_of_a_page_are_answered(html, server_url):
+    targets = {link.get("href") or "" for link in html.all("a")}
     broken = []
     for target in sorted(target.split("#")[0] for target in targets if target.startswith("/")):
         try:
