@@ -1,45 +1,38 @@
 r"""Exact responses of a linear loop with one dead time.
 
-Between two multiples of the dead time the loop is an ordinary linear system driven by its own past. With
-x^m(s) = x(m theta + s) for 0 <= s <= theta and the shift operator z (z x^m = x^{m-1}) the loop reads
-dx/ds = A(z) x, so that
+Between two multiples of the dead time the loop is an ordinary linear system driven by its own past. With the shift
+operator z, (z x)(t) = x(t - theta), the loop reads dx/dt = A(z) x. Cut the dead time into Q pieces of length
+theta/Q and call x_k(s) the state at time s after the start of piece k: then z x_k = x_{k-Q}, so that
 
-.. math:: x^m(s) = \sum_j F_j(s)\, x^{m-j}(0), \qquad e^{s A(z)} = \sum_j F_j(s) z^j .
+.. math:: x_k(s) = \sum_j F_j(s)\, x_{k - jQ}(0), \qquad e^{s A(z)} = \sum_j F_j(s) z^j .
 
-The F_j are read off exp(s A(z)) at roots of unity by an inverse FFT. Nothing is approximated but the tail of that
-series, which is made smaller than rounding. A Pade fraction is nowhere.
+Nothing is approximated but the tail of that series, which is made smaller than rounding. A Pade fraction is nowhere.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from math import factorial
 
 import numpy as np
 import numpy.typing as npt
 
 from looplab.engine.errors import NoConvergence
+from looplab.engine.loop.shift_series import Symbol, circle_radius, pieces_of_dead_time, shift_series
 
 FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
-TAIL = 1e-13
-MAX_NODES = 2048
-# 1/k! for k = 4 i + j
-_TAYLOR = np.array([[1.0 / factorial(4 * i + j) for j in range(4)] for i in range(4)])
-# z (k,) -> A(z) (k, n, n), C(z) (k, p, n)
-Symbol = Callable[[ComplexArray], tuple[ComplexArray, ComplexArray]]
+MAX_PIECES = 60_000
+LARGEST_STATE = 1e14
+# Above this size marching is cheaper than powers of the companion matrix.
+LARGEST_COMPANION = 250
 
 
 @dataclass(frozen=True)
 class TimeGrid:
-    """Output times k*h that fall on the breakpoints: theta = per_interval*h, or h = intervals_per_step*theta."""
+    """Output times k*h: theta is a whole number of steps, or a step is a whole number of dead times."""
 
     h: float
     count: int
-    per_interval: int
-    intervals_per_step: int
 
     @property
     def t(self) -> FloatArray:
@@ -47,105 +40,72 @@ class TimeGrid:
         return self.h * np.arange(self.count)
 
 
-def delay_grid(theta: float, horizon: float, points: int) -> TimeGrid:
-    """A grid close to ``points`` samples over ``horizon`` on which every multiple of theta is a sample, if it can be."""
-    h0 = horizon / (points - 1)
-    if theta >= h0:
-        per_interval = int(np.ceil(theta / h0 - 1e-9))
-        h = theta / per_interval
-        return TimeGrid(h, int(np.floor(horizon / h + 1e-9)) + 1, per_interval, 1)
-    per_step = max(1, int(np.floor(h0 / theta + 1e-9)))
-    h = per_step * theta
-    return TimeGrid(h, int(np.floor(horizon / h + 1e-9)) + 1, 1, per_step)
+@dataclass(frozen=True)
+class DelayGrid(TimeGrid):
+    """A grid whose breakpoints are samples.
 
-
-def expm_batch(matrices: ComplexArray) -> ComplexArray:
-    """exp of a stack of matrices (k, n, n): scaling to norm 1/2, Taylor polynomial of degree 15, squaring.
-
-    The polynomial is summed in powers of the fourth power (Paterson-Stockmeyer), six products in all; its remainder at
-    norm 1/2 is below 1e-18.
+    Attributes
+    ----------
+    pieces : int
+        Q, pieces that the dead time is cut into.
+    samples : int
+        Output samples per piece (1 where a step is one piece or longer).
+    pieces_per_step : int
+        Pieces per output step (1 where a piece is one step or longer).
     """
-    norm = np.abs(matrices).sum(axis=-1).max(initial=0.0)
-    squarings = max(0, int(np.ceil(np.log2(norm))) + 1) if norm > 0.5 else 0
-    a1 = matrices / 2.0**squarings
-    a2 = a1 @ a1
-    a3 = a2 @ a1
-    a4 = a2 @ a2
-    powers = np.stack([np.broadcast_to(np.eye(a1.shape[-1]), a1.shape), a1, a2, a3])
-    blocks = np.tensordot(_TAYLOR, powers, axes=1)
-    out = blocks[3]
-    for block in (blocks[2], blocks[1], blocks[0]):
-        out = block + a4 @ out
-    for _ in range(squarings):
-        out = out @ out
-    return out
+
+    pieces: int = 1
+    samples: int = 1
+    pieces_per_step: int = 1
 
 
-def _power(base: ComplexArray, exponent: int) -> ComplexArray:
-    out = None
-    while exponent:
-        if exponent & 1:
-            out = base if out is None else out @ base
-        base = base @ base
-        exponent >>= 1
-    assert out is not None
-    return out
+def delay_grid(theta: float, horizon: float, points: int, pieces: int = 1) -> DelayGrid:
+    """A grid close to ``points`` samples over ``horizon`` on which every multiple of theta is a sample, if it can be.
+
+    Parameters
+    ----------
+    theta, horizon : float
+        Dead time and length [time].
+    points : int
+        Samples wanted.
+    pieces : int
+        Pieces that the dead time must be cut into at least.
+    """
+    h0 = horizon / (points - 1)
+    per_dead_time = theta / h0
+    if per_dead_time < 1.0:
+        step = max(1, int(np.floor(h0 / theta + 1e-9)))
+        h = step * theta
+        return DelayGrid(h, int(np.floor(horizon / h + 1e-9)) + 1, pieces, 1, step * pieces)
+    if pieces <= per_dead_time:
+        samples = int(np.ceil(per_dead_time / pieces - 1e-9))
+        h = theta / (pieces * samples)
+        return DelayGrid(h, int(np.floor(horizon / h + 1e-9)) + 1, pieces, samples, 1)
+    steps = int(np.ceil(per_dead_time - 1e-9))
+    per_step = -(-pieces // steps)
+    h = theta / steps
+    return DelayGrid(h, int(np.floor(horizon / h + 1e-9)) + 1, steps * per_step, 1, per_step)
 
 
-def _powers_of(step: ComplexArray, rows: ComplexArray, count: int) -> ComplexArray:
-    """rows @ step^k for k = 0..count-1, shape (nodes, count, p, n), by doubling."""
-    nodes, p, n = rows.shape
-    out = np.empty((nodes, count * p, n), dtype=complex)
-    out[:, :p] = rows
-    done = 1
-    while done < count:
-        more = min(done, count - done)
-        out[:, done * p : (done + more) * p] = out[:, : more * p] @ step
-        step = step @ step
-        done += more
-    return out.reshape(nodes, count, p, n)
-
-
-def _coefficients(
-    symbol: Symbol, grid: TimeGrid, theta: float, intervals: int, radius: float
-) -> tuple[FloatArray, FloatArray]:
-    """F_j(theta) r^j, shape (J, n, n), and the output rows of F_j(k h) r^j, shape (J, q, p, n), r the radius."""
-    nodes = 16
-    while nodes <= MAX_NODES:
-        A, C = symbol(radius * np.exp(-2j * np.pi * np.arange(nodes // 2 + 1) / nodes))
-        step = expm_batch(A * grid.h)
-        end = _power(step, grid.per_interval) if grid.intervals_per_step == 1 else expm_batch(A * theta)
-        # With these nodes the forward transform is the series itself, so irfft returns its coefficients.
-        F = np.fft.irfft(end, n=nodes, axis=0)
-        size = np.abs(F).max(axis=(1, 2))
-        if size[nodes * 3 // 4 :].max() <= TAIL * size.max():
-            rows = _powers_of(step, C, grid.per_interval)
-            H = np.fft.irfft(rows, n=nodes, axis=0)
-            size = np.maximum(size, np.abs(H).max(axis=(1, 2, 3)))
-            keep = np.flatnonzero(size[: intervals + 1] > 1e-17 * size.max())
-            return F[: keep[-1] + 1], H[: keep[-1] + 1]
-        nodes *= 2
-    raise NoConvergence(
-        "the dead-time series does not converge for these settings",
-        field="theta",
-        hint="the loop is close to (or past) |C(inf) P(inf)| = 1, where it has no finite bandwidth; lower the gain",
-    )
-
-
-def _march(F: FloatArray, x0: FloatArray, count: int) -> FloatArray:
-    """States x^m(0) of every interval with its J-1 predecessors, newest first: (count, J, n, c)."""
+def _march(F: FloatArray, x0: FloatArray, lag: int, count: int) -> FloatArray:
+    """States x_k(0) of every piece, after (J-1) lag rows of zeros for the past, shape (count + (J-1) lag, n, c)."""
     J, n = F.shape[0], F.shape[1]
-    flat = F[::-1].transpose(1, 0, 2).reshape(n, J * n)  # newest interval last
-    x = np.zeros((count + J - 1, n, x0.shape[1]))
-    x[J - 1] = x0
-    past = x.reshape(-1, x0.shape[1])
-    for m in range(J, count + J - 1):
-        x[m] = flat @ past[(m - J) * n : m * n]
-    return np.stack([x[J - 1 - j : J - 1 - j + count] for j in range(J)], axis=1)
+    before = (J - 1) * lag
+    x = np.zeros((count + before, n, x0.shape[1]))
+    x[before] = x0
+    flat = np.ascontiguousarray(F[::-1].transpose(1, 0, 2).reshape(n, J * n))  # oldest first
+    if lag == 1:
+        past = x.reshape(-1, x0.shape[1])
+        for k in range(before + 1, count + before):
+            x[k] = flat @ past[(k - J) * n : k * n]
+    else:
+        for k in range(before + 1, count + before):
+            x[k] = flat @ x[k - 1 - before : k : lag].reshape(J * n, -1)
+    return x
 
 
 def _leap(F: FloatArray, x0: FloatArray, every: int, count: int) -> FloatArray:
-    """States x^m(0) of every ``every``-th interval with its J-1 predecessors, newest first: (count, J, n, c)."""
+    """For pieces of one dead time: states of every ``every``-th piece with its past, newest first: (count, J, n, c)."""
     J, n = F.shape[0], F.shape[1]
     c = x0.shape[1]
     companion = np.zeros((J * n, J * n))
@@ -164,10 +124,29 @@ def _leap(F: FloatArray, x0: FloatArray, every: int, count: int) -> FloatArray:
     return out.transpose(1, 0, 2).reshape(count, J, n, c)
 
 
+def _states(F: FloatArray, x0: FloatArray, grid: DelayGrid, count: int) -> FloatArray:
+    """State at the start of each needed piece with its past in steps of the dead time: (count, J, n, c)."""
+    every = grid.pieces_per_step
+    if grid.pieces == 1 and every > 1 and F.shape[0] * F.shape[1] <= LARGEST_COMPANION:
+        return _leap(F, x0, every, count)
+    total = (count - 1) * every + 1
+    if total > MAX_PIECES:
+        raise NoConvergence(
+            "this loop changes too much within one dead time for so long a horizon",
+            field="horizon",
+            hint="shorten the horizon or lower the gain",
+        )
+    x = _march(F, x0, grid.pieces, total)
+    before = (F.shape[0] - 1) * grid.pieces
+    return np.stack(
+        [x[before - j * grid.pieces : before - j * grid.pieces + total : every] for j in range(F.shape[0])], axis=1
+    )
+
+
 def delayed_response(
-    symbol: Symbol, x0: FloatArray, theta: float, grid: TimeGrid, neutral: float = 0.0
-) -> FloatArray:
-    """Outputs of dx/dt = A(z) x, y = C(z) x with z the shift by theta, zero before t = 0.
+    symbol: Symbol, x0: FloatArray, theta: float, horizon: float, points: int, neutral: float = 0.0
+) -> tuple[DelayGrid, FloatArray]:
+    r"""Outputs of dx/dt = A(z) x, y = C(z) x with z the shift by theta, zero before t = 0.
 
     Parameters
     ----------
@@ -175,46 +154,39 @@ def delayed_response(
         z, shape (k,) -> A(z), shape (k, n, n), and C(z), shape (k, p, n).
     x0 : ndarray, shape (n, c)
         c initial states, answered at once.
-    theta : float
-        Dead time, > 0 [time].
-    grid : TimeGrid
-        From delay_grid.
+    theta, horizon : float
+        Dead time > 0 and length of the response [time].
+    points : int
+        Samples wanted.
     neutral : float
-        Size of the jump that comes back after one dead time, \\|Dc Dp\\| [-]. From 1 on such a loop is unstable at every
-        high frequency; its response is computed as far as it stays below 1e14.
+        Relative size of the jump that comes back after one dead time, \|Dc Dp\| [-]. From 1 on such a loop is unstable
+        at every high frequency; its response is computed as far as jumps stay below 1e14.
 
     Returns
     -------
-    ndarray, shape (grid.count, p, c)
+    grid : DelayGrid
+    out : ndarray, shape (grid.count, p, c)
         Right-hand limits at the grid's times; NaN beyond the computed part of a growing neutral loop.
 
     Raises
     ------
     NoConvergence
-        The series in z does not converge.
+        The dead time is too long for the speed of the loop and the horizon.
     """
-    # Inside this circle the series converges; powers of the radius are undone interval by interval.
-    radius = 1.0 if neutral < 0.8 else 0.8 / neutral
-    if grid.intervals_per_step > 1:
-        F, H = _coefficients(symbol, grid, theta, grid.count * grid.intervals_per_step, radius)
-        if radius < 1.0:
-            scale = radius ** -np.arange(F.shape[0])
-            F, H = F * scale[:, None, None], H * scale[:, None, None, None]
-        states = _leap(F, x0, grid.intervals_per_step, grid.count)
-        return np.einsum("jpn,mjnc->mpc", H[:, 0], states)
-    intervals = -(-grid.count // grid.per_interval)
-    whole = intervals
+    grid = delay_grid(theta, horizon, points, pieces_of_dead_time(symbol, theta, circle_radius(neutral)))
+    steps = -(-grid.count // grid.samples)
+    whole = steps
     if neutral > 1.0:
-        intervals = min(intervals, 2 + int(np.log(1e14) / np.log(neutral)))
-    F, H = _coefficients(symbol, grid, theta, intervals, radius)
-    if radius < 1.0:
-        scale = radius ** -np.arange(F.shape[0])
-        F, H = F * scale[:, None, None], H * scale[:, None, None, None]
-    states = _march(F, x0, intervals)
+        steps_per_dead_time = grid.pieces / grid.pieces_per_step
+        steps = min(steps, int((2 + np.log(LARGEST_STATE) / np.log(neutral)) * steps_per_dead_time) + 1)
+    terms = int(grid.count * grid.h / theta) + 2
+    h = grid.h / grid.pieces_per_step
+    F, H = shift_series(symbol, h, grid.samples, terms, neutral)
+    states = _states(F, x0, grid, steps)
     J, q, p, n = H.shape
     kernel = H.transpose(1, 2, 0, 3).reshape(q * p, J * n)
     out = kernel @ states.transpose(1, 2, 0, 3).reshape(J * n, -1)
-    out = out.reshape(q, p, intervals, -1).transpose(2, 0, 1, 3).reshape(intervals * q, p, -1)
-    if intervals < whole:
-        out = np.concatenate([out, np.full(((whole - intervals) * q, *out.shape[1:]), np.nan)])
-    return out[: grid.count]
+    out = out.reshape(q, p, steps, -1).transpose(2, 0, 1, 3).reshape(steps * q, p, -1)
+    if steps < whole:
+        out = np.concatenate([out, np.full(((whole - steps) * q, *out.shape[1:]), np.nan)])
+    return grid, out[: grid.count]

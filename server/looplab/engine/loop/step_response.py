@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.linalg import expm, matrix_balance
 
 from looplab.engine.errors import InvalidInput
 from looplab.engine.loop.dead_time import TimeGrid, delay_grid, delayed_response
@@ -72,6 +73,19 @@ class LoopEquations:
         self.g[:p] += P.C
         self.g[n - 1] += P.D
         self.Dc, self.DpDc = C.D, P.D * C.D
+        self._balance(n - 2)
+
+    def _balance(self, states: int) -> None:
+        """Scale the states so that rows and columns of A are of one size: exponentials keep their digits."""
+        if not states:
+            return
+        size = np.abs(self.base) + np.outer(np.abs(self.b_y), np.abs(self.g))
+        _, (scale, _) = matrix_balance(size[:states, :states], permute=False, separate=True)
+        self.base[:states] /= scale[:, None]
+        self.base[:, :states] *= scale
+        self.b_y[:states] /= scale
+        self.g[:states] *= scale
+        self.u0[:states] *= scale
 
     def at(self, z: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """A(z), shape (k, n, n), and the rows of y, u, dy/dt, du/dt, shape (k, 4, n), for z of shape (k,)."""
@@ -161,7 +175,7 @@ def closed_loop_step(loop: FeedbackLoop, horizon: float, points: int = 500) -> C
     InvalidInput
         Horizon or points outside their range, dead time below a millionth of the horizon, controller dead time.
     NoConvergence
-        The dead-time series does not converge (not seen for loops within the limits).
+        The dead time is too long for the speed of the loop and the horizon.
 
     References
     ----------
@@ -178,12 +192,13 @@ def closed_loop_step(loop: FeedbackLoop, horizon: float, points: int = 500) -> C
     equations = LoopEquations(loop)
     with np.errstate(over="ignore", invalid="ignore"):
         if theta == 0.0:
-            grid = TimeGrid(horizon / (points - 1), points, 1, 1)
+            grid = TimeGrid(horizon / (points - 1), points)
             A, rows = equations.at(np.ones(1))
             out = delay_free_response(A[0].real, rows[0].real, equations.starts, grid.h, grid.count)
         else:
-            grid = delay_grid(theta, horizon, points)
-            out = delayed_response(equations.at, equations.starts, theta, grid, abs(equations.DpDc))
+            grid, out = delayed_response(
+                equations.at, equations.starts, theta, horizon, points, abs(equations.DpDc)
+            )
     t, why = grid.t, f"the response grows beyond {LARGEST_VALUE:g}: the loop is unstable"
     final_r, final_d = _final_values(loop)
     return ClosedLoopStep(
@@ -218,18 +233,12 @@ def step_response(system: TransferFunction, horizon: float, points: int = 500) -
     row = np.append(ss.C, ss.D)
     x0 = np.zeros((n + 1, 1))
     x0[-1] = 1.0
-    grid = (
-        delay_grid(system.theta, horizon, points)
-        if system.theta
-        else TimeGrid(horizon / (points - 1), points, 1, 1)
-    )
-    # On the dead-time grid theta is per_interval steps, or 1/intervals_per_step of one.
-    shift = grid.per_interval if system.theta and grid.intervals_per_step == 1 else 0
-    offset = grid.h - system.theta if system.theta and grid.intervals_per_step > 1 else 0.0
-    if offset:
-        from scipy.linalg import expm
-
-        x0, shift = expm(A * offset) @ x0, 1
+    grid, shift = TimeGrid(horizon / (points - 1), points), 0
+    if system.theta:
+        grid = delay_grid(system.theta, horizon, points)
+        shift = grid.samples if grid.pieces_per_step == 1 else 1
+        # Where a step is several dead times, the first sample comes that much after the dead time's end.
+        x0 = expm(A * (shift * grid.h - system.theta)) @ x0 if grid.pieces_per_step > 1 else x0
     with np.errstate(over="ignore", invalid="ignore"):
         values = delay_free_response(A, np.stack([row, row @ A]), x0, grid.h, grid.count)[:, :, 0]
     rows = np.zeros((grid.count, 4))

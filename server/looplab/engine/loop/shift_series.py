@@ -1,0 +1,172 @@
+r"""Series in the shift z of the dead time: the coefficients F_j(s) of exp(s A(z)) = sum_j F_j(s) z^j.
+
+They are read off exp(s A(z)) at points of a circle by an inverse FFT. On the circle the exponential may be much larger
+than the coefficients, so s is kept short enough that it is not: see ``pieces_of_dead_time``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import factorial
+
+import numpy as np
+import numpy.typing as npt
+
+from looplab.engine.errors import NoConvergence
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+# z (k,) -> A(z) (k, n, n), C(z) (k, p, n)
+Symbol = Callable[[ComplexArray], tuple[ComplexArray, ComplexArray]]
+
+TAIL = 1e-15
+STAGNATION = 1e-11
+MAX_NODES = 4096
+# Largest exp(s A(z)) on the circle: that many digits of the coefficients may be lost to cancellation.
+LARGEST_EXPONENTIAL = 1e3
+# Longest piece in units of 1/norm(A): each squaring of a stiff exponential costs a little accuracy.
+LONGEST_PIECE = 256.0
+# A returning jump (neutral loop) shrinks by this factor per dead time on the circle chosen for it.
+NEUTRAL_DECAY = 0.983
+# 1/k! for k = 4 i + j
+_TAYLOR = np.array([[1.0 / factorial(4 * i + j) for j in range(4)] for i in range(4)])
+
+
+def _taylor(matrices: ComplexArray) -> ComplexArray:
+    """exp of matrices of norm <= 1/2: degree 15 in powers of the fourth power (Paterson-Stockmeyer), error < 1e-18."""
+    a2 = matrices @ matrices
+    a3 = a2 @ matrices
+    a4 = a2 @ a2
+    powers = np.stack([np.broadcast_to(np.eye(matrices.shape[-1]), matrices.shape), matrices, a2, a3])
+    blocks = np.tensordot(_TAYLOR, powers, axes=1)
+    out = blocks[3]
+    for block in (blocks[2], blocks[1], blocks[0]):
+        out = block + a4 @ out
+    return out
+
+
+def _norm(matrices: ComplexArray) -> float:
+    return float(np.abs(matrices).sum(axis=-1).max(initial=0.0))
+
+
+def expm_batch(matrices: ComplexArray) -> ComplexArray:
+    """exp of a stack of matrices, shape (k, n, n), by scaling, a Taylor polynomial and squaring."""
+    norm = _norm(matrices)
+    squarings = max(0, int(np.ceil(np.log2(norm))) + 1) if norm > 0.5 else 0
+    out = _taylor(matrices / 2.0**squarings)
+    for _ in range(squarings):
+        out = out @ out
+    return out
+
+
+def circle(nodes: int, radius: float) -> ComplexArray:
+    """The upper half of ``nodes`` points of a circle; a real series is known from it."""
+    return radius * np.exp(-2j * np.pi * np.arange(nodes // 2 + 1) / nodes)
+
+
+def circle_radius(neutral: float) -> float:
+    """Radius of a circle inside which a series with jumps of relative size ``neutral`` converges."""
+    return 1.0 if neutral <= NEUTRAL_DECAY else NEUTRAL_DECAY / neutral
+
+
+def pieces_of_dead_time(symbol: Symbol, theta: float, radius: float) -> int:
+    """Into how many pieces the dead time must be cut for exp(s A(z)) to stay small on the circle."""
+    A, _ = symbol(circle(16, radius))
+    norm = _norm(A * theta)
+    if norm <= 4.0:
+        return 1
+    halvings = int(np.ceil(np.log2(norm))) + 1
+    grown = _taylor(A * (theta / 2.0**halvings))
+    pieces = 2.0**halvings
+    while pieces > 1 and norm * 2 / pieces <= LONGEST_PIECE:
+        with np.errstate(over="ignore", invalid="ignore"):
+            grown = grown @ grown
+        if not _norm(grown) <= LARGEST_EXPONENTIAL:
+            break
+        pieces /= 2
+    return int(pieces)
+
+
+def _powers_of(step: ComplexArray, rows: ComplexArray, count: int) -> ComplexArray:
+    """rows @ step^k for k = 0..count-1, shape (nodes, count, p, n), by doubling."""
+    nodes, p, n = rows.shape
+    out = np.empty((nodes, count * p, n), dtype=complex)
+    out[:, :p] = rows
+    done = 1
+    while done < count:
+        more = min(done, count - done)
+        out[:, done * p : (done + more) * p] = out[:, : more * p] @ step
+        step = step @ step
+        done += more
+    return out.reshape(nodes, count, p, n)
+
+
+def _power(base: ComplexArray, exponent: int) -> ComplexArray:
+    out = base
+    for bit in bin(exponent)[3:]:
+        out = out @ out
+        if bit == "1":
+            out = out @ base
+    return out
+
+
+def shift_series(
+    symbol: Symbol, h: float, samples: int, terms: int, neutral: float = 0.0
+) -> tuple[FloatArray, FloatArray]:
+    """Coefficients over one piece of length samples*h.
+
+    Parameters
+    ----------
+    symbol : callable
+        z, shape (k,) -> A(z), shape (k, n, n), and C(z), shape (k, p, n).
+    h : float
+        Sampling interval [time].
+    samples : int
+        Samples per piece.
+    terms : int
+        Terms that can matter at most.
+    neutral : float
+        Relative size of the jump that comes back after one dead time [-].
+
+    Returns
+    -------
+    F : ndarray, shape (J, n, n)
+        Coefficients of exp(samples h A(z)).
+    H : ndarray, shape (J, samples, p, n)
+        Coefficients of C(z) exp(k h A(z)), k = 0..samples-1.
+
+    Raises
+    ------
+    NoConvergence
+        More than 4096 terms would be needed.
+    """
+    radius = circle_radius(neutral)
+    nodes, tail = 16, np.inf
+    if neutral > 0:
+        wanted = np.log(TAIL) / np.log(min(neutral * radius, NEUTRAL_DECAY))
+        nodes = min(MAX_NODES, max(16, 2 ** int(np.ceil(np.log2(max(wanted, 1.0) / 0.75)))))
+    while nodes <= MAX_NODES:
+        A, C = symbol(circle(nodes, radius))
+        step = expm_batch(A * h)
+        # At these points the forward transform is the series itself, so irfft returns its coefficients.
+        F = np.fft.irfft(_power(step, samples), n=nodes, axis=0)
+        size = np.abs(F).max(axis=(1, 2))
+        # The exponential of a stiff matrix has rounding noise of its own, in every coefficient: a small tail that no
+        # longer shrinks is that noise.
+        noise = max(TAIL * 30.0, TAIL * _norm(A * (h * samples)))
+        tail, before = size[nodes * 3 // 4 :].max() / size.max(), tail
+        if tail <= noise or nodes == MAX_NODES or 0.1 * before < tail < STAGNATION:
+            H = np.fft.irfft(_powers_of(step, C, samples), n=nodes, axis=0)
+            reach = np.abs(H).max(axis=(1, 2, 3))
+            if reach[nodes * 3 // 4 :].max() <= max(10 * noise, 2 * tail) * max(reach.max(), size.max()):
+                size = np.maximum(size / size.max(), reach / max(reach.max(), 1e-300))
+                last = int(np.flatnonzero(size[:terms] > 1e-17)[-1]) + 1
+                undo = radius ** -np.arange(last, dtype=float)
+                return F[:last] * undo[:, None, None], H[:last] * undo[:, None, None, None]
+        nodes *= 2
+    raise NoConvergence(
+        "the dead-time series does not converge for these settings",
+        field="theta",
+        hint="the loop changes very much within one dead time; lower the gain or shorten the horizon",
+    )
