@@ -54,8 +54,8 @@ class ZPKSystem(Model):
     """k prod(s - zeros)/prod(s - poles) exp(-theta s); a complex root is [re, im] and comes with its conjugate."""
 
     type: Literal["zpk"]
-    zeros: Roots = []
-    poles: Roots = []
+    zeros: Roots = Field(default=[])
+    poles: Roots = Field(default=[])
     k: float = 1.0
     theta: DeadTime = 0.0
 

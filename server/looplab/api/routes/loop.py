@@ -20,9 +20,7 @@ from looplab.schemas import Loop, Model, located
 
 router = APIRouter(tags=["loop"], route_class=StrictRoute)
 
-PanelName = Literal[
-    "verdict", "step", "bode", "nyquist", "root_locus", "poles", "margins", "metrics", "sensitivity"
-]
+PanelName = Literal["verdict", "step", "bode", "nyquist", "root_locus", "poles", "margins", "metrics", "sensitivity"]
 DEFAULT: list[PanelName] = list(PanelName.__args__)  # type: ignore[attr-defined]
 
 EXAMPLE: dict[str, Any] = {
@@ -39,11 +37,11 @@ class LoopRequest(Model):
     """A loop and the panels wanted of it."""
 
     loop: Loop
-    want: Annotated[list[PanelName], Field(max_length=16)] = DEFAULT
+    want: Annotated[list[PanelName], Field(max_length=16)] = Field(default=DEFAULT)
     have: Annotated[
         dict[PanelName, Annotated[str, Field(max_length=64)]],
         Field(description="Keys of panels the caller already holds; a panel whose key is unchanged is left out."),
-    ] = {}
+    ] = Field(default={})
     horizon: Annotated[float, Field(gt=0)] | None = None
     points: Annotated[int, Field(ge=20, le=5000)] = 500
     omega: Annotated[list[Annotated[float, Field(gt=0)]], Field(min_length=2, max_length=2)] | None = None
@@ -52,7 +50,7 @@ class LoopRequest(Model):
 
 def _summary(request: LoopRequest, context: LoopContext) -> dict[str, Any]:
     plant = context.loop.plant
-    texts = {}
+    texts: dict[str, dict[str, Any]] = {}
     for name, shape, system in (
         ("plant", request.loop.plant, plant),
         ("controller", request.loop.controller, context.loop.C),
@@ -63,9 +61,7 @@ def _summary(request: LoopRequest, context: LoopContext) -> dict[str, Any]:
     return texts
 
 
-@router.post(
-    "/loop", summary="Analyse and simulate a feedback loop", responses={200: {"model": LoopAnswer}, **ERRORS}
-)
+@router.post("/loop", summary="Analyse and simulate a feedback loop", responses={200: {"model": LoopAnswer}, **ERRORS})
 def loop(
     request: Annotated[LoopRequest, Body(openapi_examples={"PI on 1/(s+1)^3": {"value": EXAMPLE}})],
 ) -> Response:

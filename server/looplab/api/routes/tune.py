@@ -15,7 +15,7 @@ from looplab.api.strict import StrictRoute
 from looplab.engine.errors import EngineError
 from looplab.engine.identification import two_point
 from looplab.engine.systems import FOPDT
-from looplab.engine.tuning import RULES, TYPES, UltimatePoint, ultimate_point
+from looplab.engine.tuning import RULES, UltimatePoint, ultimate_point
 from looplab.labs.text import render_math
 from looplab.schemas import Model, System, located
 
@@ -48,7 +48,7 @@ class TuneRequest(Model):
     model: ModelParameters | None = None
     ultimate: UltimateParameters | None = None
     rules: Annotated[list[RuleName], Field(min_length=1, max_length=16)] | None = None
-    types: Annotated[list[TypeName], Field(min_length=1, max_length=8)] = list(TYPES)  # type: ignore[assignment]
+    types: Annotated[list[TypeName], Field(min_length=1, max_length=8)] = Field(default=["P", "PI", "PID"])
 
     @model_validator(mode="after")
     def _one_source(self) -> TuneRequest:

@@ -20,8 +20,8 @@ from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
 
-# |L| below which further phase crossovers of a dead time are not listed (gain margin above 1000).
-NEGLIGIBLE = 1e-3
+# |L| below which further phase crossovers of a dead time are not listed (gain margin above 20).
+NEGLIGIBLE = 0.05
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Crossings:
         Frequencies with L on the negative real axis [rad/time], ln \\|L\\| there, and -1 where the phase falls, +1
         where it rises. Passing over a pole on the imaginary axis counts, with infinite \\|L\\|.
     cut : bool
-        The dead time makes further phase crossovers beyond the grid, all with \\|L\\| below 0.001.
+        The dead time makes further phase crossovers beyond the grid, all with \\|L\\| below 0.05.
     """
 
     omega: FloatArray
@@ -59,7 +59,7 @@ def _search_grid(L: TransferFunction) -> FloatArray:
             roots = np.concatenate([L.zeros, L.poles])
             top = 2.0 * np.abs(roots).max(initial=0.0)
             fade = (abs(L.gain) / NEGLIGIBLE) ** (1.0 / L.relative_degree)
-            high = max(top, fade, 4.0 * np.pi / L.theta) * 1.5
+            high = max(top, fade, 4.0 * np.pi / L.theta) * 1.1
         else:
             high = max(frequency_range(L)[1], 40.0 * np.pi / L.theta)
     return frequency_grid(L, min(low, high / 10), high)
@@ -78,27 +78,29 @@ def _axis_zeros(L: TransferFunction) -> FloatArray:
 def _gain_crossovers(L: TransferFunction, omega: FloatArray, log_mag: FloatArray) -> FloatArray:
     sign = log_mag > 0
     at = np.flatnonzero(sign[1:] != sign[:-1])
-    x = refine_brackets(lambda x, _: log_magnitude(L, np.exp(x)), np.log(omega[at]), np.log(omega[at + 1]))
+    x = refine_brackets(lambda x: log_magnitude(L, np.exp(x)), np.log(omega[at]), np.log(omega[at + 1]))
     return np.exp(x)
 
 
 def _phase_crossovers(L: TransferFunction, omega: FloatArray, phase: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Frequencies and directions; several levels may lie in one interval."""
     band = np.floor((phase + np.pi) / (2.0 * np.pi))  # changes by one at each odd multiple of pi
-    left, level, direction = [], [], []
+    left: list[int] = []
+    level: list[float] = []
+    direction: list[float] = []
     for i in np.flatnonzero(band[1:] != band[:-1]):
         low, high = sorted((band[i], band[i + 1]))
         levels = 2.0 * np.pi * np.arange(low + 1, high + 1) - np.pi
         falling = band[i + 1] < band[i]
         for value in levels[::-1] if falling else levels:
-            left.append(i)
-            level.append(value)
+            left.append(int(i))
+            level.append(float(value))
             direction.append(-1.0 if falling else 1.0)
-    i, target = np.array(left, dtype=int), np.array(level)
-    a, b = np.log(omega[i]), np.log(omega[i + 1])
+    at, target = np.array(left, dtype=int), np.array(level)
+    a, b = np.log(omega[at]), np.log(omega[at + 1])
 
-    def f(x: FloatArray, which: npt.NDArray[np.intp]) -> FloatArray:
-        return phase_rad(L, np.exp(x)) - target[which]
+    def f(x: FloatArray) -> FloatArray:
+        return phase_rad(L, np.exp(x)) - target
 
     return np.exp(refine_brackets(f, a, b)), np.array(direction)
 

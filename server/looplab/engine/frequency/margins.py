@@ -55,7 +55,7 @@ class Margins:
 def _peak(L: TransferFunction, omega: FloatArray, kind: str) -> tuple[float, float]:
     """Largest |S| or |T| over omega, refined where the slope changes sign; (value, omega)."""
 
-    def slope(x: FloatArray, _: object = None) -> FloatArray:
+    def slope(x: FloatArray) -> FloatArray:
         w = np.exp(x)
         s = 1j * w
         value = L(s)
@@ -183,8 +183,8 @@ def margins(L: TransferFunction) -> Margins:
         text = "infinite: the gain never reaches 1" if L.gain else "undefined: the open loop is zero"
         reasons |= dict.fromkeys(("PM_deg", "omega_c", "delay_margin"), text)
 
-    peaks: dict[str, float | None] = dict(_sensitivity_peaks(L, found.omega)) if L.gain else dict(
-        Ms=1.0, omega_Ms=0.0, Mt=0.0, omega_Mt=0.0
+    peaks: dict[str, float | None] = (
+        dict(_sensitivity_peaks(L, found.omega)) if L.gain else dict(Ms=1.0, omega_Ms=0.0, Mt=0.0, omega_Mt=0.0)
     )
     for name in ("Ms", "Mt"):
         value = peaks[name]

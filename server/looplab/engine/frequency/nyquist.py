@@ -63,7 +63,7 @@ def _start_turns(L: TransferFunction, omega_low: float) -> int:
     low, high = sorted((start, phase_low))
     levels = np.arange(np.floor((low + np.pi) / (2 * np.pi)) + 1, np.floor((high + np.pi) / (2 * np.pi)) + 1)
     levels = levels * 2 * np.pi - np.pi
-    between = np.count_nonzero((levels > low + 1e-12) & (levels < high - 1e-12))
+    between = int(np.count_nonzero((levels > low + 1e-12) & (levels < high - 1e-12)))
     return turns + (2 * between if phase_low < start else -2 * between)
 
 

@@ -37,7 +37,7 @@ class TimeGrid:
     @property
     def t(self) -> FloatArray:
         """The times, shape (count,) [time]."""
-        return self.h * np.arange(self.count)
+        return self.h * np.arange(self.count, dtype=float)
 
 
 @dataclass(frozen=True)

@@ -56,16 +56,17 @@ class HermiteCurve:
             high, low = np.where(past, x, high), np.where(past, low, x)
             with np.errstate(all="ignore"):
                 newton = x - value / (b + x * (2 * c + x * 3 * d))
-            inside = (newton > low) & (newton < high)
+            inside = (newton >= low) & (newton <= high)
             new = np.where(inside, newton, 0.5 * (low + high))
-            if (np.abs(new - x) < 4e-16).all() or (value == 0).all():
-                break
+            step = np.abs(new - x).max()
             x = new
+            if step < 1e-15:
+                break
         return self._time(piece, x)
 
     def extrema(self) -> tuple[FloatArray, FloatArray]:
         """Times and values of the turning points, corners at samples included, increasing in time."""
-        a, b, c, d = self._cubic
+        _, b, c, d = self._cubic
         with np.errstate(all="ignore"):
             root = np.sqrt(np.maximum(c * c - 3 * b * d, 0.0))
             q = -(c + np.copysign(root, c))

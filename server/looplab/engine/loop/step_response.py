@@ -97,8 +97,8 @@ class LoopEquations:
 
     def closed_loop_matrix(self) -> FloatArray:
         """A of the autonomous loop without dead time, shape (n, n): plant and controller states only."""
-        A, _ = self.at(np.ones(1))
-        return A[0, :-2, :-2].real
+        A, _ = self.at(np.ones(1, dtype=complex))
+        return A[0, :-2, :-2].real.copy()
 
     @property
     def starts(self) -> FloatArray:
@@ -127,9 +127,7 @@ def _cut(t: FloatArray, rows: FloatArray, final: float | None, why: str) -> Resp
     stop = int(np.argmax(bad)) if bad.any() else t.size
     whole = stop == t.size
     y, u, dy, du = rows[:stop].T
-    return Response(
-        t[:stop], y, u, dy, du, final, None if whole else float(t[stop]), None if whole else why
-    )
+    return Response(t[:stop], y, u, dy, du, final, None if whole else float(t[stop]), None if whole else why)
 
 
 def _final_values(loop: FeedbackLoop) -> tuple[float | None, float | None]:
@@ -193,17 +191,13 @@ def closed_loop_step(loop: FeedbackLoop, horizon: float, points: int = 500) -> C
     with np.errstate(over="ignore", invalid="ignore"):
         if theta == 0.0:
             grid = TimeGrid(horizon / (points - 1), points)
-            A, rows = equations.at(np.ones(1))
+            A, rows = equations.at(np.ones(1, dtype=complex))
             out = delay_free_response(A[0].real, rows[0].real, equations.starts, grid.h, grid.count)
         else:
-            grid, out = delayed_response(
-                equations.at, equations.starts, theta, horizon, points, abs(equations.DpDc)
-            )
+            grid, out = delayed_response(equations.at, equations.starts, theta, horizon, points, abs(equations.DpDc))
     t, why = grid.t, f"the response grows beyond {LARGEST_VALUE:g}: the loop is unstable"
     final_r, final_d = _final_values(loop)
-    return ClosedLoopStep(
-        t, horizon, _cut(t, out[:, :, 0], final_r, why), _cut(t, out[:, :, 1], final_d, why)
-    )
+    return ClosedLoopStep(t, horizon, _cut(t, out[:, :, 0], final_r, why), _cut(t, out[:, :, 1], final_d, why))
 
 
 def step_response(system: TransferFunction, horizon: float, points: int = 500) -> Response:

@@ -24,7 +24,7 @@ AXIS_TOLERANCE = 1e-9
 
 @dataclass(frozen=True)
 class ClosedLoopPoles:
-    """Closed-loop poles, rightmost first [rad/time]; ``complete`` is False where dead time makes them infinitely many."""
+    """Closed-loop poles, rightmost first [rad/time]; not ``complete`` where dead time makes them infinitely many."""
 
     poles: ComplexArray
     complete: bool
@@ -91,7 +91,7 @@ def closed_loop_poles(loop: FeedbackLoop) -> ClosedLoopPoles:
     .. [1] D. Breda, S. Maset, R. Vermiglio, SIAM J. Sci. Comput. 27 (2005) 482-495 (pseudospectral collocation).
     """
     if loop.theta == 0.0 or loop.open_loop.gain == 0.0:
-        poles = np.linalg.eigvals(LoopEquations(loop).closed_loop_matrix()) + 0j
+        poles = np.linalg.eigvals(LoopEquations(loop).closed_loop_matrix()).astype(complex)
         polished, good = polish_closed_loop_poles(loop.open_loop, poles)
         return ClosedLoopPoles(_sorted(np.where(good, polished, poles)), True)
     reason = "dead time makes infinitely many closed-loop poles; the rightmost are listed"
@@ -130,16 +130,18 @@ def _verdict_from_poles(poles: ComplexArray) -> Verdict:
         if any(np.count_nonzero(np.abs(axis - p) < 1e-6 * max(abs(p), 1e-6)) > 1 for p in axis):
             return Verdict("unstable", False, "a repeated closed-loop pole lies on the imaginary axis", 0)
         at = axis[np.argmax(axis.imag)]
-        what = "a closed-loop pole lies at the origin" if abs(at) < 1e-12 else (
-            f"a pair of closed-loop poles lies on the imaginary axis at ±{_number(abs(at.imag))}j: "
-            "the loop oscillates without end"
+        what = (
+            "a closed-loop pole lies at the origin"
+            if abs(at) < 1e-12
+            else (
+                f"a pair of closed-loop poles lies on the imaginary axis at ±{_number(abs(at.imag))}j: "
+                "the loop oscillates without end"
+            )
         )
         return Verdict("marginal", False, what, 0)
     slowest = poles[np.argmax(poles.real)]
     many = f"all {poles.size} closed-loop poles lie" if poles.size > 1 else "the closed-loop pole lies"
-    return Verdict(
-        "stable", True, f"{many} in the left half-plane; the rightmost at {_pole_text(slowest)}", 0
-    )
+    return Verdict("stable", True, f"{many} in the left half-plane; the rightmost at {_pole_text(slowest)}", 0)
 
 
 @lru_cache(maxsize=128)
@@ -173,9 +175,7 @@ def closed_loop_verdict(loop: FeedbackLoop) -> Verdict:
     rightmost = f" The rightmost pole is at {_pole_text(poles[0])}." if poles.size else ""
     if count.Z:
         many = f"{count.Z} closed-loop poles lie" if count.Z > 1 else "a closed-loop pole lies"
-        return Verdict(
-            "unstable", False, f"{many} in the right half-plane (Nyquist: Z = N + P).{rightmost}", count.Z
-        )
+        return Verdict("unstable", False, f"{many} in the right half-plane (Nyquist: Z = N + P).{rightmost}", count.Z)
     return Verdict(
         "stable", True, f"no closed-loop pole lies in the right half-plane (Nyquist: Z = N + P = 0).{rightmost}", 0
     )

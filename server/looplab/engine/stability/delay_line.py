@@ -1,4 +1,4 @@
-"""A loop's dead time as a transported wave, collocated at Chebyshev points: a matrix whose eigenvalues are near the poles."""
+"""A loop's dead time as a transported wave at Chebyshev points: a matrix whose eigenvalues are near the poles."""
 
 from __future__ import annotations
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -124,7 +125,7 @@ def _poles_at(L: TransferFunction, gains: FloatArray) -> ComplexArray:
     """Closed-loop poles for each gain, unsorted, shape (m, n)."""
     ss = realize(L)
     effective = gains / (1.0 + gains * ss.D)
-    found = np.linalg.eigvals(ss.A - effective[:, None, None] * np.outer(ss.B, ss.C)) + 0j
+    found = np.linalg.eigvals(ss.A - effective[:, None, None] * np.outer(ss.B, ss.C)).astype(complex)
     polished, good = polish_closed_loop_poles(L, found, gains[:, None], steps=3)
     # Near a break-away Newton may pull two roots into one: keep the eigenvalues there.
     good &= np.abs(polished - found) < 0.2 * _nearest_neighbour(found)
@@ -175,7 +176,7 @@ def _view(
     every = np.concatenate([L.poles, L.zeros])
     size = np.sort(np.abs(every[every != 0]))
     slow = float(size[-1]) if size.size else 1.0
-    for small, large in zip(size, size[1:], strict=False):
+    for small, large in pairwise(size):
         if large > 6.0 * small and np.count_nonzero(np.abs(every) <= small) >= 2:
             slow = float(small)
             break
@@ -192,11 +193,12 @@ def _view(
 def _refine(L: TransferFunction, gains: FloatArray, size: float) -> tuple[FloatArray, ComplexArray]:
     """Add gains where a branch jumps or turns, until it looks smooth in a window of the given size."""
     poles = _poles_at(L, gains)
+    coarse: npt.NDArray[np.bool_]
     for _ in range(5):
         branches = _join(L, gains, poles)
         step = np.abs(np.diff(branches, axis=1))
         inside = np.minimum(np.abs(branches[:, 1:]), np.abs(branches[:, :-1])) < 3.0 * size
-        coarse = ((step > 0.04 * size) & inside).any(axis=0)
+        coarse = np.asarray(((step > 0.04 * size) & inside).any(axis=0))
         middle = branches[:, 1:-1]
         a, b = middle - branches[:, :-2], branches[:, 2:] - middle
         with np.errstate(all="ignore"):
@@ -262,9 +264,7 @@ def root_locus(L: TransferFunction) -> RootLocus:
         centroid = float((L.poles.sum() - L.zeros.sum()).real / n_minus_m)
         first = 180.0 if L.gain > 0 else 0.0
         angles = (first + 360.0 * np.arange(n_minus_m)) / n_minus_m
-    return RootLocus(
-        gains, branches, L.poles, L.zeros, centroid, angles, breaks, crossed, view
-    )
+    return RootLocus(gains, branches, L.poles, L.zeros, centroid, angles, breaks, crossed, view)
 
 
 def poles_at_gain(L: TransferFunction, K: float) -> ComplexArray:

@@ -76,10 +76,8 @@ def to_latex(system: TransferFunction, digits: int = 4) -> str:
     """Factored LaTeX."""
     top, bottom = (_product(r, digits, latex=True) for r in (system.zeros, system.poles))
     gain = latex_number(system.gain, digits)
-    if top and gain in {"1", "-1"}:
-        head = gain.removesuffix("1") + top
-    else:
-        head = rf"{gain}\,{top}" if top else gain
+    implied = bool(top) and gain in {"1", "-1"}
+    head = (gain.removesuffix("1") if implied else gain + (r"\," if top else "")) + top
     if bottom:
         head = rf"\frac{{{head}}}{{{bottom}}}"
     if system.theta:

@@ -19,7 +19,8 @@ from looplab.engine.errors import ParseError
 MAX_CHARACTERS = 500
 MAX_DEPTH = 40
 
-_TOKEN = re.compile(r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<op>\*\*|[-+*/^(){}\[\]]))")
+_NUMBER = r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
+_TOKEN = re.compile(rf"\s*(?:{_NUMBER}|(?P<name>[A-Za-z_]\w*)|(?P<op>\*\*|[-+*/^(){{}}\[\]]))")
 _PASTED = str.maketrans({"−": "-", "–": "-", "·": "*", "×": "*", "⋅": "*", "²": "^2", "³": "^3", "\u00a0": " "})
 _CLOSING = {"(": ")", "{": "}", "[": "]"}
 
@@ -143,15 +144,16 @@ class _Parser:
             inner = self.sum()
             if self.token.text != _CLOSING[token.text]:
                 raise ParseError(
-                    f"the bracket {token.text!r} opened in column {token.column} is not closed", column=self.token.column
+                    f"the bracket {token.text!r} opened in column {token.column} is not closed",
+                    column=self.token.column,
                 )
             self.take()
             return Node("group", (inner,), token.column)
         if token.kind == "name":
             return self.name(token)
         if token.kind == "end":
-            raise ParseError("the expression ends too early", column=token.column, hint="a factor is missing at the end")
-        raise ParseError(f"{token.text!r} cannot stand here", column=token.column, hint="a number, s or ( is expected")
+            raise ParseError("the expression ends too early", column=token.column, hint="a factor is missing")
+        raise ParseError(f"{token.text!r} cannot stand here", column=token.column, hint="expected is a number, s or (")
 
     def name(self, token: _Token) -> Node:
         if token.text in ("s", "S"):

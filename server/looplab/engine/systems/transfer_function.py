@@ -62,9 +62,7 @@ class TransferFunction:
                 hint="dead time delays: write exp(-0.5 s), theta = 0.5",
             )
         if max(z.size, p.size) > MAX_CONNECTED_ORDER:
-            raise InvalidInput(
-                f"order {max(z.size, p.size)} exceeds the limit of {MAX_CONNECTED_ORDER}", field="poles"
-            )
+            raise InvalidInput(f"order {max(z.size, p.size)} exceeds the limit of {MAX_CONNECTED_ORDER}", field="poles")
         for name, value in (("zeros", z), ("poles", p)):
             value.setflags(write=False)
             object.__setattr__(self, name, value)

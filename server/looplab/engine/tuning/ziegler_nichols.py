@@ -52,6 +52,4 @@ def ziegler_nichols_ultimate(Ku: float, Pu: float, type: str) -> Settings:
     if not Pu > 0:
         raise InvalidInput("Pu must be positive", field="Pu")
     k, i, d = TABLE[type]
-    return Settings(
-        RULE, NAME, type, k * Ku, i * Pu if i else None, d * Pu if d else None, FORMULAS[type], SOURCE
-    )
+    return Settings(RULE, NAME, type, k * Ku, i * Pu if i else None, d * Pu if d else None, FORMULAS[type], SOURCE)
