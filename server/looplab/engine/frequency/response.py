@@ -25,6 +25,21 @@ def phase_rad(system: TransferFunction, omega: FloatArray) -> FloatArray:
 
     with m integrators and k0 the limit of s^m G(s). Each root adds its own angle, so nothing is unwrapped. Roots on
     the imaginary axis are passed on the right (the usual Nyquist indentation): the phase drops by pi at such a pole.
+
+    Parameters
+    ----------
+    system : TransferFunction
+    omega : ndarray
+        Frequencies, > 0 [rad/time].
+
+    Returns
+    -------
+    ndarray
+        Shape of omega [rad].
+
+    References
+    ----------
+    .. [1] K. J. Åström, R. M. Murray, Feedback Systems, 2nd ed., Princeton University Press (2021), ch. 10.
     """
     phase = np.full(omega.shape, -0.5 * np.pi * system.origin_order - (np.pi if system.origin_gain < 0 else 0.0))
     for roots, sign in ((system.zeros, 1.0), (system.poles, -1.0)):

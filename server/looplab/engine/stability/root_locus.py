@@ -221,7 +221,9 @@ def _refine(L: TransferFunction, gains: FloatArray, size: float) -> tuple[FloatA
 
 @lru_cache(maxsize=128)
 def root_locus(L: TransferFunction) -> RootLocus:
-    r"""Closed-loop poles of 1 + K L(s) = 0 for K from 0 upwards.
+    r"""Closed-loop poles for a gain K from 0 upwards.
+
+    .. math:: 1 + K L(s) = 0
 
     Parameters
     ----------
