@@ -45,8 +45,9 @@ export class NumberField extends HTMLElement {
     return this.#value;
   }
   set value(value) {
+    // The echo of what is being typed is no news: that it is done has still to be told.
+    if (value !== this.#value) this.#told = value;
     this.#value = value;
-    this.#told = value;
     // Never rewrite what someone is typing.
     if (document.activeElement !== this.#input || this.#parsed().value !== value) this.#show();
   }
