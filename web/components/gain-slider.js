@@ -3,7 +3,7 @@
  *
  * Attributes as `<number-field>`, plus `min` and `max` of the slider's usual range (a typed value beyond it
  * widens the range by decades), `linear` for an even scale (logarithmic otherwise) and `hard` where min and max
- * are limits of the value itself. Arrow keys step, Shift makes a step ten, Home and End go to the ends.
+ * are limits of the value itself, and `step` for what one arrow key moves. Arrow keys step, Shift makes a step ten, Home and End go to the ends.
  * Property `marks`: values worth a tick, with what they are. Events "value-input" (moving), "value-change" (rest).
  */
 
@@ -90,7 +90,7 @@ export class GainSlider extends HTMLElement {
     if (this.#moving) return;
     const log = !this.hasAttribute("linear");
     const range = this.hasAttribute("hard") ? this.#usual : log ? widen(this.#value, this.#usual) : { min: Math.min(this.#value, this.#usual.min), max: Math.max(this.#value, this.#usual.max) };
-    this.#scale = createScale({ ...range, log });
+    this.#scale = createScale({ ...range, log, step: Number(this.getAttribute("step")) || null });
   }
 
   #fit() {

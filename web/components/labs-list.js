@@ -3,6 +3,7 @@
 /** @import {LabSummary} from "../core/types.js" */
 
 import { createApi } from "../core/api.js";
+import { localStore, readProgress, solvedIn } from "../core/lab-progress.js";
 import { h } from "./dom.js";
 
 export class LabsList extends HTMLElement {
@@ -38,7 +39,16 @@ function labCard({ id, title, level, section, summary, minutes, exercises }) {
     h("h3", {}, h("a", { href: `/labs/${encodeURIComponent(id)}` }, title)),
     h("p", {}, summary),
     h("p", { class: "facts" }, facts.filter(Boolean).join(" · ")),
+    begun(id, exercises),
   );
+}
+
+/** How far this browser's student has come, once there is something to say. @param {string} id @param {number} exercises */
+function begun(id, exercises) {
+  const saved = readProgress(id, localStore());
+  const solved = Math.min(solvedIn(saved), exercises);
+  if (Object.keys(saved.exercises).length === 0) return null;
+  return h("p", { class: "lab-begun" }, h("progress", { max: exercises, value: solved, "aria-hidden": "true" }), solved === exercises ? "All solved" : `${solved} of ${exercises} solved`);
 }
 
 customElements.define("labs-list", LabsList);

@@ -11,8 +11,14 @@ import { toast } from "../components/status-toast.js";
 
 const MOST_KEPT = 4;
 
-/** @param {HTMLElement} host @param {Store} store @param {Api} _api @returns {() => void} */
-export function mount(host, store, _api) {
+/**
+ * @param {HTMLElement} host
+ * @param {Store} store
+ * @param {Api} _api
+ * @param {{link?: boolean}} [options]  link: whether the address bar holds the loop
+ * @returns {() => void}
+ */
+export function mount(host, store, _api, { link: linked = true } = {}) {
   const button = (/** @type {string} */ picture, /** @type {string} */ label, /** @type {string} */ title, /** @type {() => void} */ run) =>
     h("button", { type: "button", class: "icon-button", "aria-label": label, title, onclick: run }, icon(picture));
   const undo = button("undo", "Undo", "Undo (Ctrl+Z)", () => store.undo());
@@ -20,7 +26,7 @@ export function mount(host, store, _api) {
   const link = button("link", "Copy link", "Copy a link to this loop", () => void copyLink());
   const keep = h("button", { type: "button", class: "button keep", title: "Keep this response to compare with" }, icon("keep"), "Keep");
   const kept = h("ul", { class: "kept", "aria-label": "Kept responses" });
-  const root = h("div", { class: "actions", role: "group", "aria-label": "History" }, kept, keep, undo, redo, link);
+  const root = h("div", { class: "actions", role: "group", "aria-label": "History" }, kept, keep, undo, redo, linked ? link : "");
   host.append(root);
 
   keep.addEventListener("click", () => {

@@ -10,17 +10,17 @@ import { h } from "../components/dom.js";
  * @param {HTMLElement} host
  * @param {Store} store
  * @param {Api} _api
- * @param {{narrow: () => boolean}} options
+ * @param {{narrow: () => boolean, plots?: {id: string, label: string}[]}} options
  * @returns {() => void}
  */
-export function mount(host, store, _api, { narrow }) {
-  const buttons = PLOTS.map(({ id, label }) => {
+export function mount(host, store, _api, { narrow, plots = PLOTS }) {
+  const buttons = plots.map(({ id, label }) => {
     const button = h("button", { type: "button", class: "view-toggle" }, label);
     button.addEventListener("click", () => {
       const { show } = store.get().view;
       if (narrow()) store.setView({ show: [id] });
       else if (show.includes(id)) store.setView({ show: show.length > 1 ? show.filter((name) => name !== id) : show });
-      else store.setView({ show: PLOTS.map((plot) => plot.id).filter((name) => name === id || show.includes(name)) });
+      else store.setView({ show: plots.map((plot) => plot.id).filter((name) => name === id || show.includes(name)) });
     });
     return { id, button };
   });
