@@ -45,7 +45,7 @@ def test_a_text_may_be_its_lines(data: dict[str, Any]) -> None:
         (("bench", "sliders", 0, "max"), True, "bench.sliders[0].max", "number"),
         (("bench", "sliders", 0, "max"), 0.05, "bench.sliders[0]", "min (0.1) must be below max (0.05)"),
         (("bench", "sliders", 0, "min"), 0, "bench.sliders[0]", "log scale needs min > 0"),
-        (("bench", "sliders", 0, "knob"), "Kp", "bench", "the controller has no Kp"),
+        (("bench", "controller"), {"type": "expr", "text": "1/s"}, "bench", "the controller has no Kc"),
         (("bench", "sliders", 1, "knob"), "Kc", "bench.sliders[1]", "only tau_I and tau_D"),
         (("bench", "controller", "Kc"), 50, "bench", "Kc = 50 is outside 0.1 to 20"),
         (("bench", "controller", "form"), "perfect", "bench.controller.form", "ideal"),

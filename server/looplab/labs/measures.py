@@ -37,6 +37,10 @@ WORDS = {
     "t_peak": "time of the peak",
     "decay_ratio": "decay ratio",
     "final_value": "final value",
+    "IAE": "IAE",
+    "ISE": "ISE",
+    "ITAE": "ITAE",
+    "TV": "total variation of u",
 }
 
 

@@ -76,7 +76,7 @@ def _slider(slider: Slider, bench: Bench) -> dict[str, Any]:
     symbol = NOMENCLATURE[slider.knob]
     return {
         "knob": slider.knob,
-        "label": slider.label or symbol.meaning.partition(",")[0],
+        "label": slider.label or symbol.meaning.partition(",")[0].capitalize(),
         "symbol_mathml": render_math(symbol.latex),
         "unit": _UNITS.get(symbol.unit, "").format(time=bench.time_unit),
         "min": slider.min,

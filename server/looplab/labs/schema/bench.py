@@ -7,8 +7,8 @@ from pydantic import Field, model_validator
 from looplab.labs.schema.base import Line, Model, Number
 from looplab.schemas import Controller, Loop, System
 
-Knob = Literal["Kc", "tau_I", "tau_D", "alpha", "Kp", "Ki", "Kd"]
-Panel = Literal["step", "bode", "nyquist", "root_locus", "margins", "metrics", "sensitivity"]
+Knob = Literal["Kc", "tau_I", "tau_D", "alpha"]
+Panel = Literal["step", "bode", "nyquist", "root_locus", "sensitivity", "numbers"]
 
 
 class Slider(Model):
@@ -17,7 +17,7 @@ class Slider(Model):
     knob: Knob = Field(description="Which setting of the controller it turns.")
     min: Number
     max: Number
-    step: Number = Field(gt=0, description="One press of an arrow key; on a log scale, at the low end.")
+    step: Number = Field(gt=0, description="One press of an arrow key.")
     scale: Literal["linear", "log"] = "linear"
     can_be_off: bool = Field(
         default=False,
@@ -45,7 +45,9 @@ class Bench(Model):
     controller: Controller = Field(description="The settings the bench opens with.")
     time_unit: Literal["s", "min"] = "s"
     sliders: Annotated[list[Slider], Field(min_length=1, max_length=8)]
-    panels: Annotated[list[Panel], Field(min_length=1, max_length=7)]
+    panels: Annotated[list[Panel], Field(min_length=1, max_length=6)] = Field(
+        description="What the bench can show, the most important first; the verdict is always there."
+    )
     horizon: Annotated[float, Field(gt=0)] | None = Field(
         default=None, description="Length of the step response; found from the loop where left out."
     )
