@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
-
 from fastapi import APIRouter, FastAPI
 
 from looplab import __version__
 from looplab.api import errors, pages
 from looplab.api.limits import BodyLimit
-from looplab.api.routes import health, loop, tune
+from looplab.api.routes import health, labs, loop, tune
 from looplab.api.security import SecurityHeaders
 from looplab.api.settings import Settings
 
@@ -42,12 +40,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         redoc_url=None,
     )
     v1 = APIRouter(prefix="/api/v1")
-    for module in (health, loop, tune):
+    for module in (health, loop, tune, labs):
         v1.include_router(module.router)
-    if importlib.util.find_spec("looplab.api.routes.labs") is not None:
-        from looplab.api.routes import labs
-
-        v1.include_router(labs.router)
     app.include_router(v1)
     errors.install(app)
     if settings.pages:

@@ -11,6 +11,9 @@ from starlette.responses import Response
 
 Arrays = Literal["list", "f4"]
 
+# Beyond this float32 is infinite: such an array stays a list of numbers.
+LARGEST_F4 = 3e38
+
 
 def complex_pairs(values: Any) -> list[list[float]]:
     """[[re, im], ...] of a complex array."""
@@ -20,6 +23,8 @@ def complex_pairs(values: Any) -> list[list[float]]:
 
 def _as_f4(value: Any) -> Any:
     if isinstance(value, np.ndarray):
+        if np.abs(value).max(initial=0.0) > LARGEST_F4:
+            return value
         data = np.ascontiguousarray(value, dtype="<f4")
         return {"dtype": "f4", "bdata": base64.b64encode(data.tobytes()).decode()}
     if isinstance(value, dict):

@@ -9,6 +9,7 @@ from typing import Any
 import orjson
 from fastapi import FastAPI, HTTPException, Request
 from fastapi.exceptions import RequestValidationError
+from numpy.linalg import LinAlgError
 from starlette.exceptions import HTTPException as StarletteHTTPException
 from starlette.responses import Response
 
@@ -92,6 +93,18 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(EngineError)
     async def _engine_error(_: Request, error: EngineError) -> Response:
         return error_response(ApiError(422, code_of(error), error.message, error.field or "", error.hint))
+
+    @app.exception_handler(ArithmeticError)
+    @app.exception_handler(LinAlgError)
+    async def _out_of_range(_: Request, error: Exception) -> Response:
+        return error_response(
+            ApiError(
+                422,
+                "out_of_range",
+                "the numbers of this request are too large, too small or too far apart to compute with",
+                hint="choose units in which they are moderate",
+            )
+        )
 
     @app.exception_handler(RequestValidationError)
     async def _invalid(_: Request, error: RequestValidationError) -> Response:

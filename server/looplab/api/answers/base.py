@@ -14,7 +14,7 @@ class Answer(BaseModel):
 
 
 class PackedArray(Answer):
-    """An array asked for as "f4": base64 of little-endian float32, as Plotly reads it."""
+    """An array asked for as "f4": base64 of little-endian float32, as Plotly reads it (if it fits in float32)."""
 
     dtype: str
     bdata: str

@@ -42,7 +42,7 @@ class LoopRequest(Model):
         dict[PanelName, Annotated[str, Field(max_length=64)]],
         Field(description="Keys of panels the caller already holds; a panel whose key is unchanged is left out."),
     ] = Field(default={})
-    horizon: Annotated[float, Field(gt=0)] | None = None
+    horizon: Annotated[float, Field(ge=1e-9, le=1e9, description="Length of the step responses [time].")] | None = None
     points: Annotated[int, Field(ge=20, le=5000)] = 500
     omega: Annotated[list[Annotated[float, Field(gt=0)]], Field(min_length=2, max_length=2)] | None = None
     arrays: Literal["list", "f4"] = "list"
@@ -89,7 +89,7 @@ def loop(
             panels[name] = {"key": key, **panel.compute(context)}
         except EngineError as error:
             if error.field in ("plant", "controller", "theta"):
-                error.field = "loop" if error.field == "theta" else f"loop.{error.field}"
+                error.field = "loop.plant" if error.field == "theta" else f"loop.{error.field}"
             raise
     answer = {"time_unit": "s", **_summary(request, context), "unchanged": unchanged, "panels": panels}
     return json_response(answer, request.arrays)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Body
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 from starlette.responses import Response
 
 from looplab.api.answers.tune import TuneAnswer
@@ -39,6 +39,13 @@ class UltimateParameters(Model):
 
     Ku: float
     Pu: Annotated[float, Field(gt=0)]
+
+    @field_validator("Ku")
+    @classmethod
+    def _not_zero(cls, Ku: float) -> float:
+        if Ku == 0:
+            raise ValueError("Ku must not be zero")
+        return Ku
 
 
 class TuneRequest(Model):

@@ -8,9 +8,11 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
+from looplab.engine.errors import InvalidInput
 from looplab.engine.frequency.bracketing import refine_brackets
 from looplab.engine.frequency.response import (
     AXIS_GAP,
+    MAX_DELAY_POINTS,
     frequency_grid,
     frequency_range,
     log_magnitude,
@@ -54,6 +56,16 @@ def _search_grid(L: TransferFunction) -> FloatArray:
     low, high = frequency_range(L)
     low, high = low * 1e-2, high * 1e2
     if L.theta > 0:
+        # The grid follows the turns of the dead time up to here.
+        reach = MAX_DELAY_POINTS * np.pi / (8.0 * L.theta)
+        outside = np.logspace(np.log10(reach), max(np.log10(reach), np.log10(high)) + 0.1, 200)
+        if L.relative_degree > 0 and L.gain and log_magnitude(L, outside).max() > 0:
+            raise InvalidInput(
+                f"the dead time {L.theta:g} is too long for so fast a loop: its phase turns more than "
+                f"{MAX_DELAY_POINTS // 16} times before |L| falls below 1",
+                field="theta",
+                hint="check the units of the dead time, or lower the gain",
+            )
         # Beyond this |L| < NEGLIGIBLE for good; the dead time would add crossovers without end.
         if L.relative_degree > 0 and L.gain:
             roots = np.concatenate([L.zeros, L.poles])
@@ -62,6 +74,7 @@ def _search_grid(L: TransferFunction) -> FloatArray:
             high = max(top, fade, 4.0 * np.pi / L.theta) * 1.1
         else:
             high = max(frequency_range(L)[1], 40.0 * np.pi / L.theta)
+        high = min(high, reach)
     return frequency_grid(L, min(low, high / 10), high)
 
 

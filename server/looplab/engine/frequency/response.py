@@ -54,9 +54,11 @@ def phase_rad(system: TransferFunction, omega: FloatArray) -> FloatArray:
 
 def log_magnitude(system: TransferFunction, omega: FloatArray) -> FloatArray:
     """ln |G(j omega)|, shape of omega; -inf at a zero, +inf at a pole on the axis."""
+    if system.gain == 0.0:
+        return np.full(omega.shape, -np.inf)
     s = 1j * omega
     with np.errstate(divide="ignore", over="ignore", under="ignore"):
-        out = np.full(omega.shape, np.log(abs(system.gain)) if system.gain else -np.inf)
+        out = np.full(omega.shape, np.log(abs(system.gain)))
         for roots, sign in ((system.zeros, 1.0), (system.poles, -1.0)):
             if roots.size:
                 out += sign * np.log(np.abs(s - roots[:, None])).sum(axis=0)

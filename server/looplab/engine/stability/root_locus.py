@@ -77,9 +77,12 @@ def breakaway_points(L: TransferFunction) -> tuple[Breakaway, ...]:
     """
     if not L.order:
         return ()
-    N, D = from_roots(L.zeros), from_roots(L.poles)
+    # In units of a typical root: expanded in other units the coefficients spread over hundreds of decades.
+    sizes = np.abs(np.concatenate([L.zeros, L.poles]))
+    unit = float(np.exp(np.mean(np.log(sizes[sizes > 0])))) if (sizes > 0).any() else 1.0
+    N, D = from_roots(L.zeros / unit), from_roots(L.poles / unit)
     left, right = np.polymul(np.polyder(N), D), np.polymul(N, np.polyder(D))
-    candidates = roots(np.polysub(left, right))
+    candidates = unit * roots(np.polysub(left, right))
     out: list[Breakaway] = []
     repeated = L.poles[[np.count_nonzero(L.poles == p) > 1 for p in L.poles]]
     for s in candidates:

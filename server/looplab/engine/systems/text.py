@@ -159,7 +159,7 @@ def _roots(factors: Counter[Polynomial]) -> np.ndarray:
 def parse_transfer_function(text: str) -> TransferFunction:
     r"""Read a transfer function from text.
 
-    Accepted are numbers, ``s``, ``+ - * / ^``, brackets, implied products and ``exp(-theta s)`` or ``e^(-theta s)``, for
+    Accepted are numbers, ``s``, ``+ - * / ^``, brackets, implied products, ``exp(-theta s)``, ``e^(-theta s)``; for
     example ``(s+3)/(s^2*(s+2)) exp(-0.1 s)`` or ``1/(s+1)^3``. Factors stay factors: (s+1)^10 has ten exact poles.
     Only a written-out sum such as s^3+3s^2+3s+1 is rooted numerically.
 

@@ -14,6 +14,19 @@ from looplab.engine.systems.polynomial import ComplexArray, FloatArray, from_roo
 # Of one system that is given; connections of several may have more.
 MAX_ORDER = 50
 MAX_CONNECTED_ORDER = 200
+SMALLEST, LARGEST = 1e-12, 1e12
+
+
+def _check_range(field: str, sizes: FloatArray) -> None:
+    """Times and rates are kept where double precision can still multiply them."""
+    used = sizes[sizes != 0]
+    if used.size and not (used.min() >= SMALLEST and used.max() <= LARGEST):
+        worst = used.min() if used.min() < SMALLEST else used.max()
+        raise InvalidInput(
+            f"{field} contains {worst:.3g}, outside {SMALLEST:g} ... {LARGEST:g}",
+            field=field,
+            hint="choose a time unit in which the numbers are moderate",
+        )
 
 
 class TransferFunction:
@@ -61,6 +74,11 @@ class TransferFunction:
                 field="theta",
                 hint="dead time delays: write exp(-0.5 s), theta = 0.5",
             )
+        _check_range("zeros", np.abs(z))
+        _check_range("poles", np.abs(p))
+        _check_range("theta", np.array([theta]))
+        if gain and not 1e-150 < abs(gain) < 1e150:
+            raise InvalidInput("the gain is outside 1e-150 ... 1e150", field="gain", hint="choose other units")
         if max(z.size, p.size) > MAX_CONNECTED_ORDER:
             raise InvalidInput(f"order {max(z.size, p.size)} exceeds the limit of {MAX_CONNECTED_ORDER}", field="poles")
         for name, value in (("zeros", z), ("poles", p)):
