@@ -10,6 +10,10 @@ from serving import environment, serving
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
+# The same examples on every machine and no deadline a busy one would miss; `--hypothesis-profile=default` looks further.
+settings.register_profile("looplab", deadline=None, derandomize=True, database=None)
+settings.load_profile("looplab")
+
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     # The browser's event loop stays in the main thread once started, and its tests are the slow ones: last.
