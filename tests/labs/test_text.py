@@ -58,6 +58,15 @@ def test_markdown_and_math() -> None:
     assert '<div class="table"><table>' in html
 
 
+def test_headings_start_below_those_of_the_page() -> None:
+    assert render_text("### A\n\n#### B\n\n### C") == "<h3>A</h3>\n<h4>B</h4>\n<h3>C</h3>\n"
+    assert render_text("A\n=\n\nB\n-") == "<h3>A</h3>\n<h4>B</h4>\n"
+
+
+def test_a_full_stop_stays_with_its_formula() -> None:
+    assert "</math>\N{WORD JOINER}." in render_text("It is $x$.")
+
+
 def test_display_math_is_a_block() -> None:
     assert render_text("$$\n\\frac{1}{2}\n$$").startswith('<div class="math"><math display="block">')
     assert '<math display="block">' in render_text("inline $$x$$ too")
@@ -184,6 +193,7 @@ def test_any_text_is_harmless(pieces: list[str]) -> None:
         ("[here](javascript:x)", "link"),
         ("<b>bold</b>", "HTML"),
         ("$$ x", "$$"),
+        ("| | $x$ |\n|---|---|\n| 1 | 2 |", "needs words"),
     ],
 )
 def test_an_author_is_told_what_to_repair(text: str, said: str) -> None:

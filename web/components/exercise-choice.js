@@ -35,7 +35,8 @@ export function choiceBody({ title, options = [], several = false }, { onEdit })
       showHtml(said, feedback_html);
       // One picked answer has its feedback right beneath it; several share the end of the list.
       const holder = several ? null : rows.find(({ input }) => input.checked)?.element;
-      (holder ?? list).after(said);
+      if (holder) holder.append(said);
+      else list.after(said);
     },
     clear() {
       mark("");

@@ -127,11 +127,8 @@ function open(lab) {
   actionsBar.mount(place("actions"), store, api, { link: false });
   createStage(place("stage"), store, api, plots.map(({ id }) => ({ id, mount: /** @type {import("../components/stage.js").Mount} */ (MOUNTS[id]) })));
 
-  let writing = 0;
   store.subscribe(({ controller }, change) => {
-    if (change.moving || !change.design) return;
-    clearTimeout(writing);
-    writing = window.setTimeout(() => progress.keepSettings(settingsOf(controller, bench.sliders)), 300);
+    if (change.design && !change.moving) progress.keepSettings(settingsOf(controller, bench.sliders));
   });
   store.answers.subscribe(({ moving }) => {
     if (moving) return;

@@ -6,6 +6,7 @@ or runs a script, and a sanitiser with a short list of allowed tags has the last
 
 from collections.abc import Sequence
 from functools import cache, lru_cache
+from itertools import pairwise
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -18,6 +19,8 @@ from mdit_py_plugins.dollarmath import dollarmath_plugin
 from looplab.engine.errors import InvalidInput
 
 MAX_LATEX = 2000
+WORD_JOINER = "\N{WORD JOINER}"
+_CLOSING = tuple(".,;:!?)")
 MAX_DEPTH = 40
 """Braces inside braces in a formula."""
 
@@ -98,7 +101,13 @@ def plain(text: str) -> str:
 def text_problems(markdown: str) -> list[str]:
     """What an author should repair: formulas that cannot be typeset, links that lead nowhere, raw HTML."""
     problems: list[str] = []
-    for token in _all_tokens(_parser().parse(markdown, {})):
+    parsed = _parser().parse(markdown, {})
+    for opening, inline in pairwise(parsed):
+        if opening.type == "th_open" and not any(
+            token.type == "text" and token.content for token in inline.children or []
+        ):
+            problems.append("The head of a table's column needs words: gain $K_c$, not $K_c$ alone.")
+    for token in _all_tokens(parsed):
         if token.type in ("math_inline", "math_inline_double", "math_block"):
             try:
                 render_math(token.content.strip())
@@ -142,14 +151,19 @@ def _formula(renderer: Any, tokens: Sequence[Token], index: int, options: Any, e
         mathml = f"<code>{plain(token.content)}</code>"
     if token.type == "math_block":
         return f'<div class="math">{mathml}</div>\n'
-    return f'<span class="math">{mathml}</span>' if token.type == "math_inline_double" else mathml
+    if token.type == "math_inline_double":
+        return f'<span class="math">{mathml}</span>'
+    following = tokens[index + 1].content if index + 1 < len(tokens) else ""
+    # A line may break after a formula, but its full stop must not start the next one.
+    return mathml + WORD_JOINER if following[:1] in _CLOSING else mathml
 
 
 def _heading(renderer: Any, tokens: Sequence[Token], index: int, options: Any, env: Any) -> str:
-    # The page owns h1 (the lab) and h2 (its parts); a text starts below them.
+    # The page owns h1 (the lab) and h2 (its parts): the highest heading of a text is h3, whatever it was written as.
+    highest = min(int(token.tag[1]) for token in tokens if token.type == "heading_open")
     token = tokens[index]
-    token.tag = f"h{min(6, int(token.tag[1]) + 2)}" if token.level == 0 else token.tag
-    return str(renderer.renderToken(tokens, index, options, env))
+    level = int(token.tag[1]) - highest + 3
+    return f"<h{min(level, 6)}>" if token.nesting == 1 else f"</h{min(level, 6)}>\n"
 
 
 def _scrolling_table(renderer: Any, tokens: Sequence[Token], index: int, options: Any, env: Any) -> str:
