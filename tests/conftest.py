@@ -5,12 +5,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+from hypothesis import settings
 
 from serving import environment, serving
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
-# The same examples on every machine and no deadline a busy one would miss; `--hypothesis-profile=default` looks further.
+# The same examples on every machine, no deadline a busy one misses; --hypothesis-profile=default looks further.
 settings.register_profile("looplab", deadline=None, derandomize=True, database=None)
 settings.load_profile("looplab")
 
