@@ -6,6 +6,7 @@
 /** @import {Store} from "../core/store.js" */
 
 import { inWords, settingsOf, withSettings } from "../core/lab-bench.js";
+import { sameDesign } from "../core/store.js";
 import { h, setText } from "../components/dom.js";
 import { exerciseCard } from "../components/exercise-card.js";
 import { icon } from "../components/icons.js";
@@ -123,8 +124,10 @@ function partSection(part, index, store, api, options, stops) {
           type: "button",
           class: "button preset",
           onclick: () => {
-            store.setController(withSettings(store.get().controller, settings));
-            toast().say(`The bench stands at ${inWords(settings, lab.bench.sliders)}.`, { action: { label: "Undo", run: () => store.undo() } });
+            const before = store.get();
+            store.setController(withSettings(before.controller, settings));
+            const undo = { label: "Undo", run: () => store.undo() };
+            toast().say(`The bench stands at ${inWords(settings, lab.bench.sliders)}.`, sameDesign(before, store.get()) ? {} : { action: undo });
           },
         },
         `Set the bench to ${inWords(settings, lab.bench.sliders)}`,

@@ -77,7 +77,8 @@ class LoopMeasures:
 
     @cached_property
     def _step(self) -> ClosedLoopStep:
-        horizon = self.horizon or default_horizon(self.loop)
+        # A bench may show less than the loop needs to come to rest; the measures must not.
+        horizon = max(self.horizon or 0.0, default_horizon(self.loop))
         return closed_loop_step(self.loop, horizon=horizon, points=POINTS)
 
     @cached_property

@@ -50,7 +50,9 @@ def grade_design(exercise: DesignExercise, answer: Any, bench: Bench) -> Result:
 
 
 def meets(spec: Specification, value: float) -> bool:
-    return value <= spec.limit if spec.relation == "<=" else value >= spec.limit
+    """The limit itself is met: 0.1 of an offset that comes out as 0.10000000000000003 is 0.1."""
+    slack = 1e-9 * max(1.0, abs(spec.limit))
+    return value <= spec.limit + slack if spec.relation == "<=" else value >= spec.limit - slack
 
 
 def demand(spec: Specification, time_unit: str) -> str:
