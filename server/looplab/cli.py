@@ -2,6 +2,7 @@
 
 import os
 import socket
+from pathlib import Path
 from typing import Annotated
 
 # Before anything imports numpy: the matrices here are small, and threads of BLAS only get in each other's way.
@@ -46,10 +47,19 @@ def serve(
     port: Annotated[
         int, typer.Option(min=0, max=65535, help="Port to listen on; 0 takes a free one.", envvar="LOOPLAB_PORT")
     ] = 8000,
+    labs: Annotated[
+        Path | None,
+        typer.Option(
+            exists=True, file_okay=False, help="Folder of your own labs, in place of those that come with looplab."
+        ),
+    ] = None,
     log_level: Annotated[str, typer.Option(help="critical, error, warning, info or debug.")] = "warning",
 ) -> None:
     """Start the server and say where to point the browser. Ctrl+C stops it."""
     import uvicorn
+
+    if labs is not None:
+        os.environ["LOOPLAB_LABS"] = str(labs.resolve())
 
     class Server(uvicorn.Server):
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:

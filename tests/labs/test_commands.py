@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 
 from looplab import __version__
 from looplab.cli import app
+from looplab.labs import Library
 
 runner = CliRunner()
 
@@ -88,3 +89,12 @@ def test_a_port_in_use_is_said_so() -> None:
         result = runner.invoke(app, ["serve", "--port", str(port)])
     assert result.exit_code == 1
     assert f"port {port}" in result.output
+
+
+def test_serve_with_labs_of_ones_own(lab_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LOOPLAB_LABS", "")  # so that it is put back afterwards
+    monkeypatch.setattr("uvicorn.Server.run", lambda *_, **__: None)
+    result = runner.invoke(app, ["serve", "--port", "0", "--labs", str(lab_file.parent)])
+    assert result.exit_code == 0, result.output
+    assert [lab.id for lab in Library().all()] == ["small"]
+    assert runner.invoke(app, ["serve", "--labs", str(lab_file.parent / "nowhere")]).exit_code == 2

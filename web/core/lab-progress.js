@@ -7,7 +7,7 @@
 /** @typedef {ReturnType<typeof createProgress>} Progress */
 /** @typedef {Pick<Storage, "getItem" | "setItem" | "removeItem">} Store */
 
-const STATUSES = ["correct", "partly", "wrong", "revealed"];
+const STATUSES = new Set(["correct", "partly", "wrong", "revealed"]);
 
 /** The browser's storage, or null where it is forbidden. @returns {Store | null} */
 export function localStore() {
@@ -34,7 +34,7 @@ export function readProgress(labId, storage) {
   try {
     const saved = JSON.parse(storage?.getItem(keyOf(labId)) ?? "null");
     if (typeof saved?.exercises !== "object" || saved.exercises === null) return nothing();
-    const exercises = Object.entries(saved.exercises).filter(([, record]) => STATUSES.includes(/** @type {any} */ (record)?.status));
+    const exercises = Object.entries(saved.exercises).filter(([, record]) => STATUSES.has(/** @type {any} */ (record)?.status));
     const settings = saved.settings !== null && typeof saved.settings === "object" ? saved.settings : null;
     return { exercises: Object.fromEntries(exercises), settings };
   } catch {
@@ -79,7 +79,7 @@ export function createProgress(labId, storage) {
      * @param {any} answer
      */
     record(exerciseId, status, score, answer) {
-      if (!STATUSES.includes(status)) return;
+      if (!STATUSES.has(status)) return;
       const before = saved.exercises[exerciseId];
       const final = before?.status === "correct" || before?.status === "revealed";
       const attempts = (before?.attempts ?? 0) + (status === "revealed" ? 0 : 1);

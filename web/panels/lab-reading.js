@@ -89,14 +89,14 @@ const round = (points) => String(Math.round(points * 10) / 10);
 
 /** @param {LabPart} part @param {number} index */
 function outlineItem({ id, title, blocks }, index) {
-  const ids = blocks.filter(isExercise).map((exercise) => exercise.id);
+  const ids = blocks.filter(isExercise).map((one) => one.id);
   const state = h("span", { class: "outline-state" });
   const element = h("li", {}, h("a", { href: `#part-${id}` }, h("span", { class: "outline-number", "aria-hidden": "true" }, String(index + 1)), h("span", {}, title)), state);
   return {
     element,
     /** @param {Progress} progress */
     show(progress) {
-      const solved = ids.filter((exercise) => progress.of(exercise)?.status === "correct").length;
+      const solved = ids.filter((name) => progress.of(name)?.status === "correct").length;
       const all = solved === ids.length && ids.length > 0;
       element.classList.toggle("done", all);
       const words = h("span", {}, `${solved}/${ids.length}`, h("span", { class: "visually-hidden" }, " solved"));
