@@ -1,0 +1,136 @@
+"""Closed-loop poles and the verdict: exact equation, independent counts, hidden modes, poles on the axis."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+
+from independent import rhp_closed_loop_poles
+from looplab.engine.frequency import nyquist_count
+from looplab.engine.loop import PID, FeedbackLoop
+from looplab.engine.stability import closed_loop_poles, closed_loop_verdict
+from looplab.engine.systems import TransferFunction, parse_transfer_function
+from strategies import controllers, effort, systems
+
+
+def loop(plant: str, C: PID | TransferFunction | float) -> FeedbackLoop:
+    return FeedbackLoop(parse_transfer_function(plant), PID(C) if isinstance(C, float) else C)
+
+
+@effort(60)
+@given(systems(order=(1, 4), stable=False), controllers())
+def test_delay_free_poles_are_the_roots(P: TransferFunction, C: PID) -> None:
+    closed = FeedbackLoop(P, C)
+    L = closed.open_loop
+    exact = np.roots(np.polyadd(np.poly(L.poles), L.gain * np.poly(L.zeros)))
+    size = max(1.0, np.abs(exact).max())
+    apart = np.abs(exact[:, None] - exact[None, :]) + np.eye(exact.size) * size
+    assume(apart.min() > 1e-3 * size)
+    assume(np.abs(exact).min() > 1e-3)
+    found = closed_loop_poles(closed)
+    assert found.complete
+    assert found.poles.size == L.order
+    gap = np.abs(found.poles[:, None] - exact[None, :])
+    assert gap.min(axis=1).max() <= 1e-7 * size
+    assume(np.abs(exact.real).min() > 1e-5 * size)
+    verdict = closed_loop_verdict(closed)
+    assert verdict.rhp_poles == np.count_nonzero(exact.real > 0)
+    assert verdict.closed_loop_stable == (verdict.rhp_poles == 0) == (verdict.verdict == "stable")
+    assert (found.poles.real[:-1] >= found.poles.real[1:] - 1e-8 * size).all()
+
+
+@effort(40)
+@given(systems(order=(1, 3), stable=False, theta=True), controllers())
+def test_dead_time_poles_solve_the_exact_equation_and_none_is_missed(P: TransferFunction, C: PID) -> None:
+    closed = FeedbackLoop(P, C)
+    L = closed.open_loop
+    omega = np.append(1e-9, np.logspace(-3, 3, 2001))
+    assume(np.abs(1 + L.response(omega)).min() > 1e-3)
+    poles = closed_loop_poles(closed).poles
+    value = L(poles)
+    assert (np.abs(1 + value) < 1e-6).all()
+    Z = rhp_closed_loop_poles(list(L.zeros), list(L.poles), L.gain, L.theta)
+    verdict = closed_loop_verdict(closed)
+    assert verdict.rhp_poles == Z == nyquist_count(L).Z
+    assert verdict.closed_loop_stable == (Z == 0)
+    if Z <= 10:
+        assert np.count_nonzero(poles.real > 0) == Z
+    # the rightmost pole is the rightmost: nothing lies to the right of it
+    edge = poles[0].real + 1e-4 * (1 + abs(poles[0].real))
+    if abs(edge) * L.theta < 20:
+        try:
+            beyond = rhp_closed_loop_poles(list(L.zeros), list(L.poles), L.gain, L.theta, shift=edge)
+        except ValueError:  # an open-loop pole may sit on that very line
+            return
+        assert beyond == 0
+
+
+@pytest.mark.parametrize(
+    ("plant", "Kc", "rightmost"),
+    [
+        ("exp(-s)/s", 1 / np.e, -1.0),  # double pole: s e^s = -1/e
+        ("exp(-s)/s", np.pi / 2, 1j * np.pi / 2),
+        ("exp(-s)/s", 0.2, -0.2591711018190737),  # W0(-0.2), Corless et al., Adv. Comput. Math. 5 (1996) 329
+        ("exp(-s)/s", 1.0, -0.3181315052047641 + 1.3372357014306894j),  # W(-1), known to 16 digits there
+    ],
+)
+def test_integrator_with_dead_time_is_lambert_w(plant: str, Kc: float, rightmost: complex) -> None:
+    pole = closed_loop_poles(loop(plant, float(Kc))).poles[0]
+    digits = 1e-6 if Kc == 1 / np.e else 1e-12
+    assert min(abs(pole - rightmost), abs(pole.conjugate() - rightmost)) < digits
+
+
+def test_hidden_unstable_mode_is_counted() -> None:
+    """G = 3/((s+4)(s-4)), C = (s-4)/s: T looks stable (-1, -3), the load response does not (+4)."""
+    closed = loop("3/((s+4)(s-4))", parse_transfer_function("(s-4)/s"))
+    assert np.sort(closed_loop_poles(closed).poles.real) == pytest.approx([-3, -1, 4])
+    verdict = closed_loop_verdict(closed)
+    assert verdict.verdict == "unstable"
+    assert verdict.rhp_poles == 1
+
+
+@pytest.mark.parametrize(
+    ("plant", "C", "verdict"),
+    [
+        ("1/(s+1)^3", 7.99, "stable"),
+        ("1/(s+1)^3", 8.0, "marginal"),
+        ("1/(s+1)^3", 8.01, "unstable"),
+        ("exp(-s)/s", 1.57, "stable"),
+        ("exp(-s)/s", np.pi / 2, "marginal"),
+        ("exp(-s)/s", 1.58, "unstable"),
+        ("1/s^2", 1.0, "marginal"),
+        ("1/s^3", 1.0, "unstable"),
+        ("1/s", 0.0, "marginal"),
+        ("1/s^2", 0.0, "unstable"),
+        ("1/(s-1)", 0.0, "unstable"),
+        ("1/(s-1)", 1.0, "marginal"),
+        ("1/(s-1)", 1.001, "stable"),
+        ("2", 0.7, "stable"),
+        ("exp(-s)", 0.9, "stable"),
+        ("exp(-s)", 1.1, "unstable"),
+        ("exp(-s)/(s+1)", 0.0, "stable"),
+        ("exp(-s)/(s-1)", 0.0, "unstable"),
+        ("1/(s+1)^50", 0.5, "stable"),
+        ("1/(s+1)^50", 1.2, "unstable"),
+        ("s/(s^2+1)", 1.0, "stable"),
+    ],
+)
+def test_verdicts(plant: str, C: float, verdict: str) -> None:
+    answer = closed_loop_verdict(loop(plant, float(C)))
+    assert answer.verdict == verdict
+    assert answer.because
+    assert answer.closed_loop_stable == (verdict == "stable")
+
+
+@pytest.mark.parametrize(("tau_I", "limit"), [(0.1, 0.5), (0.25, 2.0), (0.4, 8.0)])
+def test_limit_of_a_PI_loop_in_closed_form(tau_I: float, limit: float) -> None:
+    """PI on 1/(s^2+2s+2): stable below Kc = 4/(1/tau_I - 2) (Routh by hand), for every gain from tau_I = 0.5 on."""
+    for factor, stable in ((0.999, True), (1.001, False)):
+        assert closed_loop_verdict(loop("1/(s^2+2s+2)", PID(limit * factor, tau_I))).closed_loop_stable == stable
+    assert closed_loop_verdict(loop("1/(s^2+2s+2)", PID(1e4, 0.5))).closed_loop_stable
+
+
+@pytest.mark.parametrize("K", [1e-3, 0.3, 1.0, 10.0, 300.0, 1e5])
+def test_never_stable(K: float) -> None:
+    answer = closed_loop_verdict(loop("(s+3)/(s^2*(s+2)*(s+4)*(s^2+2s+9)*(s^3+5))", K))
+    assert answer.verdict == "unstable"
+    assert answer.rhp_poles >= 2

@@ -1,0 +1,76 @@
+"""Closed-loop poles counted independently of the engine: the argument principle on the characteristic function.
+
+F(s) = D(s) + N(s) e^{-theta s} is entire, so the turns of F along a closed path equal the zeros inside it. The path is
+the imaginary axis from -iR to iR (moved by ``shift``) and the right half circle; R is taken so large that no zero lies
+beyond it. Steps are halved until F turns by less than 0.35 rad in each, and once more to be sure.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+Function = Callable[[np.ndarray], np.ndarray]
+
+
+def from_roots(roots: Sequence[complex], gain: complex = 1.0) -> Function:
+    def value(s: np.ndarray) -> np.ndarray:
+        out = np.full(s.shape, complex(gain))
+        for r in roots:
+            out = out * (s - r)
+        return out
+
+    return value
+
+
+def _turn(F: Function, path: Function, a: float, b: float, step: float) -> float:
+    """Change of arg F along path from a to b; neighbours are closer than ``step`` and turn by less than 0.35 rad."""
+    v = np.linspace(a, b, 257)
+    value = F(path(v))
+    total = math.nan
+    for _ in range(60):
+        turns = np.angle(value[1:] / value[:-1])
+        coarse = (np.abs(turns) > 0.35) | (np.abs(np.diff(path(v))) > step)
+        if not coarse.any():
+            if abs(turns.sum() - total) < 0.1:
+                return float(turns.sum())
+            total = float(turns.sum())
+            coarse[:] = True  # once more, twice as fine
+        middle = 0.5 * (v[1:] + v[:-1])[coarse]
+        at = np.flatnonzero(coarse) + 1
+        v, value = np.insert(v, at, middle), np.insert(value, at, F(path(middle)))
+        if (value == 0).any() or v.size > 4_000_000:
+            break
+    raise ValueError("a root lies on the path")
+
+
+def count_right_of(D: Function, N: Function, theta: float, radius: float, shift: float = 0.0) -> int:
+    """Zeros of D + N e^{-theta s} with Re s > shift and |s - shift| < radius."""
+
+    def F(s: np.ndarray) -> np.ndarray:
+        return D(s) + N(s) * np.exp(-theta * s)
+
+    step = 0.5 / theta if theta else math.inf  # e^{-theta s} turns unseen between two far points
+    axis = _turn(F, lambda v: shift + 1j * np.sinh(v), math.asinh(radius), math.asinh(-radius), step)
+    arc = _turn(F, lambda v: shift + radius * np.exp(1j * v), -math.pi / 2, math.pi / 2, step)
+    return round((axis + arc) / (2 * math.pi))
+
+
+def rhp_closed_loop_poles(
+    zeros: Sequence[complex], poles: Sequence[complex], gain: float, theta: float = 0.0, shift: float = 0.0
+) -> int:
+    """Closed-loop poles right of ``shift`` of L = gain prod(s-z)/prod(s-p) e^{-theta s}, under unit negative feedback.
+
+    Needs deg N < deg D, or with dead time |gain| < 1, so that they are finitely many.
+    """
+    size = max([abs(r) for r in [*zeros, *poles]], default=0.0) + abs(shift)
+    excess = len(poles) - len(zeros)
+    if excess == 0:
+        room = abs(1 - abs(gain)) if theta else abs(1 + gain)
+        radius = 20.0 * (size + 1.0) * (1 + len(poles)) / room
+    else:
+        lift = math.exp(-theta * min(shift, 0.0))
+        radius = (
+            4.0 * (size + (abs(gain) * lift * 2.0 ** len(zeros) * 2.0**excess) ** (1.0 / excess) + abs(shift)) + 1e-3
+        )
+    return count_right_of(from_roots(poles), from_roots(zeros, gain), theta, radius, shift)
