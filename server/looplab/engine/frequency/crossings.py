@@ -8,7 +8,6 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from looplab.engine.errors import InvalidInput
 from looplab.engine.frequency.bracketing import refine_brackets
 from looplab.engine.frequency.response import (
     AXIS_GAP,
@@ -26,6 +25,10 @@ FloatArray = npt.NDArray[np.float64]
 NEGLIGIBLE = 0.05
 
 
+# Said of a loop whose dead time turns the curve more often than the grid follows.
+OFTEN = f"more than {MAX_DELAY_POINTS // 16} times before |L| falls below 1"
+
+
 @dataclass(frozen=True)
 class Crossings:
     """All crossovers of an open loop.
@@ -41,6 +44,8 @@ class Crossings:
         where it rises. Passing over a pole on the imaginary axis counts, with infinite \\|L\\|.
     cut : bool
         The dead time makes further phase crossovers beyond the grid, all with \\|L\\| below 0.05.
+    overrun : bool
+        The dead time turns the phase more than 250 times before \\|L\\| falls below 1: the lists are not complete.
     """
 
     omega: FloatArray
@@ -50,22 +55,19 @@ class Crossings:
     phase_log_magnitude: FloatArray
     phase_direction: FloatArray
     cut: bool
+    overrun: bool
 
 
-def _search_grid(L: TransferFunction) -> FloatArray:
+def _search_grid(L: TransferFunction) -> tuple[FloatArray, bool]:
+    """The grid, and whether |L| is above 1 beyond its end: the dead time turns too often to follow."""
+    overrun = False
     low, high = frequency_range(L)
     low, high = low * 1e-2, high * 1e2
     if L.theta > 0:
         # The grid follows the turns of the dead time up to here.
         reach = MAX_DELAY_POINTS * np.pi / (8.0 * L.theta)
         outside = np.logspace(np.log10(reach), max(np.log10(reach), np.log10(high)) + 0.1, 200)
-        if L.relative_degree > 0 and L.gain and log_magnitude(L, outside).max() > 0:
-            raise InvalidInput(
-                f"the dead time {L.theta:g} is too long for so fast a loop: its phase turns more than "
-                f"{MAX_DELAY_POINTS // 16} times before |L| falls below 1",
-                field="theta",
-                hint="check the units of the dead time, or lower the gain",
-            )
+        overrun = bool(L.relative_degree > 0 and L.gain and log_magnitude(L, outside).max() > 0)
         # Beyond this |L| < NEGLIGIBLE for good; the dead time would add crossovers without end.
         if L.relative_degree > 0 and L.gain:
             roots = np.concatenate([L.zeros, L.poles])
@@ -75,7 +77,7 @@ def _search_grid(L: TransferFunction) -> FloatArray:
         else:
             high = max(frequency_range(L)[1], 40.0 * np.pi / L.theta)
         high = min(high, reach)
-    return frequency_grid(L, min(low, high / 10), high)
+    return frequency_grid(L, min(low, high / 10), high), overrun
 
 
 def _axis_poles(L: TransferFunction) -> FloatArray:
@@ -122,9 +124,9 @@ def _phase_crossovers(L: TransferFunction, omega: FloatArray, phase: FloatArray)
 def crossings(L: TransferFunction) -> Crossings:
     """Find every crossover of the open loop L; cached by content."""
     empty = np.zeros(0)
-    omega = _search_grid(L)
+    omega, overrun = _search_grid(L)
     if L.gain == 0.0:
-        return Crossings(omega, empty, empty, empty, empty, empty, False)
+        return Crossings(omega, empty, empty, empty, empty, empty, False, False)
     log_mag, phase = log_magnitude(L, omega), phase_rad(L, omega)
     gain = _gain_crossovers(L, omega, log_mag)
     where, direction = _phase_crossovers(L, omega, phase)
@@ -135,4 +137,4 @@ def crossings(L: TransferFunction) -> Crossings:
         size[np.abs(where - b) <= 2 * AXIS_GAP * b] = -np.inf
     grid = np.unique(np.concatenate([omega, gain, where]))
     cut = L.theta > 0
-    return Crossings(grid, gain, phase_rad(L, gain), where, size, direction, cut)
+    return Crossings(grid, gain, phase_rad(L, gain), where, size, direction, cut, overrun)

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from looplab.engine.frequency.bracketing import refine_brackets
-from looplab.engine.frequency.crossings import crossings
+from looplab.engine.frequency.crossings import OFTEN, crossings
 from looplab.engine.frequency.nyquist import nyquist_count
 from looplab.engine.systems.transfer_function import TransferFunction
 
@@ -50,6 +50,9 @@ class Margins:
     gain_crossovers: tuple[GainCrossover, ...]
     phase_crossovers: tuple[PhaseCrossover, ...]
     reasons: dict[str, str] = field(default_factory=dict)
+
+
+_NAMES = ("GM", "GM_dB", "omega_180", "PM_deg", "omega_c", "delay_margin", "Ms", "omega_Ms", "Mt", "omega_Mt")
 
 
 def _peak(L: TransferFunction, omega: FloatArray, kind: str) -> tuple[float, float]:
@@ -148,6 +151,9 @@ def margins(L: TransferFunction) -> Margins:
     """
     found = crossings(L)
     count = nyquist_count(L)
+    if found.overrun:
+        why = dict.fromkeys(_NAMES, f"not computed: the dead time turns the Nyquist curve {OFTEN}")
+        return Margins(False, gain_crossovers=(), phase_crossovers=(), reasons=why, **dict.fromkeys(_NAMES))
     stable = count.Z == 0 and not count.through_minus_one
     reasons: dict[str, str] = {}
 

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from looplab.engine.frequency.crossings import crossings
+from looplab.engine.frequency.crossings import OFTEN, crossings
 from looplab.engine.frequency.response import AXIS_GAP, phase_rad
 from looplab.engine.systems.transfer_function import TransferFunction
 
@@ -58,7 +58,11 @@ def _start_turns(L: TransferFunction, omega_low: float) -> int:
         return 0
     turns = 0
     # On a positive real s the curve starts on the real axis, at phase 0 or -pi.
-    if start == -np.pi and phase_low != start:
+    if start == -np.pi and abs(phase_low - start) < 1e-12:
+        # It runs along the ray (only even powers of s) until a pole on the axis turns it off, clockwise: that crossing,
+        # counted twice later, is its own mirror image.
+        return -1
+    if start == -np.pi:
         turns += 1 if phase_low < start else -1
     low, high = sorted((start, phase_low))
     levels = np.arange(np.floor((low + np.pi) / (2 * np.pi)) + 1, np.floor((high + np.pi) / (2 * np.pi)) + 1)
@@ -91,7 +95,7 @@ def nyquist_count(L: TransferFunction) -> NyquistCount:
     .. [1] K. J. Astrom, R. M. Murray, Feedback Systems, 2nd ed., Princeton 2021, sec. 10.2.
     """
     P = right_half_plane(L.poles)
-    if L.gain == 0.0:
+    if L.gain == 0.0 or (not L.order and not L.theta):
         return NyquistCount(0, P, P)
     found = crossings(L)
     end_gain = abs(L.high_frequency_gain)
@@ -99,6 +103,8 @@ def nyquist_count(L: TransferFunction) -> NyquistCount:
         return NyquistCount(
             None, P, None, f"|L| tends to {end_gain:.4g} >= 1 with dead time: the curve encircles -1 without end"
         )
+    if found.overrun:
+        return NyquistCount(None, P, None, f"the curve encircles -1 {OFTEN}: the loop is unstable")
     touching = bool(np.any(np.abs(found.phase_log_magnitude) < 1e-9))
     touching |= bool(np.any(np.abs(np.mod(found.gain_phase, 2 * np.pi) - np.pi) < 1e-9))
     if L.origin_order == 0 and abs(L.origin_gain + 1.0) < 1e-9:

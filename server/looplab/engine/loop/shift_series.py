@@ -24,7 +24,7 @@ TAIL = 1e-15
 STAGNATION = 1e-11
 MAX_NODES = 4096
 # Largest exp(s A(z)) on the circle: that many digits of the coefficients may be lost to cancellation.
-LARGEST_EXPONENTIAL = 1e3
+LARGEST_EXPONENTIAL = 1e2
 # Longest piece in units of 1/norm(A): each squaring of a stiff exponential costs a little accuracy.
 LONGEST_PIECE = 256.0
 # A returning jump (neutral loop) shrinks by this factor per dead time on the circle chosen for it.

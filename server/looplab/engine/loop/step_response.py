@@ -236,7 +236,8 @@ def step_response(system: TransferFunction, horizon: float, points: int = 500) -
     with np.errstate(over="ignore", invalid="ignore"):
         values = delay_free_response(A, np.stack([row, row @ A]), x0, grid.h, grid.count)[:, :, 0]
     rows = np.zeros((grid.count, 4))
-    rows[shift:, [0, 2]] = values[: grid.count - shift]
+    if shift < grid.count:
+        rows[shift:, [0, 2]] = values[: grid.count - shift]
     rows[:, 1] = 1.0
     final = system.dc_gain if np.isfinite(system.dc_gain) else None
     return _cut(grid.t, rows, final, f"the response grows beyond {LARGEST_VALUE:g}")

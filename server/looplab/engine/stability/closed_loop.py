@@ -51,13 +51,17 @@ def _sorted(poles: ComplexArray) -> ComplexArray:
 def _dead_time_poles(loop: FeedbackLoop) -> ComplexArray:
     L = loop.open_loop
     theta = loop.theta
-    fastest = float(crossings(L).gain_omega.max(initial=0.0))
+    found = crossings(L)
+    fastest = float(found.gain_omega.max(initial=0.0))
     nodes = int(min(20 + np.ceil(1.5 * theta * fastest), 120))
-    candidates = np.linalg.eigvals(delay_line_matrix(LoopEquations(loop), theta, nodes))
+    candidates = np.linalg.eigvals(delay_line_matrix(LoopEquations(loop), theta, nodes)).astype(complex)
     # The collocation resolves about half a wave per node; what it cannot resolve is noise.
     candidates = candidates[(np.abs(candidates.imag) * theta < 0.75 * nodes) & (candidates.imag >= 0)]
-    poles, good = polish_closed_loop_poles(L, candidates)
-    poles = _distinct(poles[good])
+    # Beyond the collocation's reach each phase crossover has a pole close by.
+    candidates = np.concatenate([candidates, 1j * found.phase_omega])
+    poles, good = polish_closed_loop_poles(L, candidates, steps=8)
+    poles = poles[good & (poles.imag >= -1e-9 * np.abs(poles))]
+    poles = _distinct(poles[np.argsort(-poles.real)][:60])
     upper = poles[poles.imag > 1e-9 * np.abs(poles)]
     real = poles[poles.imag <= 1e-9 * np.abs(poles)].real
     return np.concatenate([real, upper, upper.conj()])

@@ -18,6 +18,7 @@ from looplab.engine.errors import ParseError
 
 MAX_CHARACTERS = 500
 MAX_DEPTH = 40
+MAX_TOKENS = 250
 
 _NUMBER = r"(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
 _TOKEN = re.compile(rf"\s*(?:{_NUMBER}|(?P<name>[A-Za-z_]\w*)|(?P<op>\*\*|[-+*/^(){{}}\[\]]))")
@@ -55,6 +56,8 @@ def _tokens(text: str) -> list[_Token]:
         kind = str(match.lastgroup)
         out.append(_Token(kind, match.group(kind), match.start(kind) + 1))
         at = match.end()
+    if len(out) > MAX_TOKENS:
+        raise ParseError(f"the expression has more than {MAX_TOKENS} parts", column=out[MAX_TOKENS].column)
     return [*out, _Token("end", "", len(text.rstrip()) + 1)]
 
 
@@ -105,14 +108,11 @@ class _Parser:
                 return left
 
     def unary(self) -> Node:
-        signs = []
+        column, negative = self.token.column, False
         while self.token.text in ("+", "-"):
-            signs.append(self.take())
+            negative ^= self.take().text == "-"
         node = self.power()
-        for sign in reversed(signs):
-            if sign.text == "-":
-                node = Node("neg", (node,), sign.column)
-        return node
+        return Node("neg", (node,), column) if negative else node
 
     def power(self) -> Node:
         base = self.atom()

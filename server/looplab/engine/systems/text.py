@@ -54,11 +54,15 @@ def _expand(factors: Counter[Polynomial]) -> np.ndarray:
     return out
 
 
-def _from_polynomial(coefficients: np.ndarray) -> _Rational:
+def _from_polynomial(coefficients: np.ndarray, column: int) -> _Rational:
     c = trim(coefficients)
+    with np.errstate(over="ignore", invalid="ignore"):
+        monic = c / c[0] if c[0] else c
+    if not np.isfinite(monic).all():
+        raise ParseError("the numbers of this sum are too far apart", column=column)
     if c.size == 1:
         return _Rational(float(c[0]))
-    return _Rational(float(c[0]), Counter({tuple(float(v) for v in c / c[0]): 1}))
+    return _Rational(float(c[0]), Counter({tuple(float(v) for v in monic): 1}))
 
 
 def _add(left: _Rational, right: _Rational, sign: float, column: int) -> _Rational:
@@ -79,7 +83,7 @@ def _add(left: _Rational, right: _Rational, sign: float, column: int) -> _Ration
     # An exact cancellation leaves rounding noise in the leading coefficients.
     noise = 4e-16 * np.polyadd(np.abs(top_left), np.abs(top_right))
     total = np.where(np.abs(total) <= noise, 0.0, total)
-    top = _from_polynomial(total)
+    top = _from_polynomial(total, column)
     if top.k == 0.0:
         return top
     return _Rational(top.k, top.num, left.den | right.den, left.theta)
