@@ -2,6 +2,7 @@
 
 import os
 import socket
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -14,8 +15,19 @@ import typer
 from looplab import __version__
 from looplab.labs.commands import app as labs_app
 
+
+class LogLevel(StrEnum):
+    """What the server writes down."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    INFO = "info"
+    DEBUG = "debug"
+
+
 app = typer.Typer(
     name="looplab",
+    add_completion=False,
     help="An interactive web control lab: feedback loops with exact dead time, tuning, graded labs.",
     no_args_is_help=True,
     rich_markup_mode="rich",
@@ -53,7 +65,7 @@ def serve(
             exists=True, file_okay=False, help="Folder of your own labs, in place of those that come with looplab."
         ),
     ] = None,
-    log_level: Annotated[str, typer.Option(help="critical, error, warning, info or debug.")] = "warning",
+    log_level: Annotated[LogLevel, typer.Option(help="How much to log.")] = LogLevel.WARNING,
 ) -> None:
     """Start the server and say where to point the browser. Ctrl+C stops it."""
     import uvicorn
@@ -68,9 +80,20 @@ def serve(
                 typer.echo(f"looplab {__version__} is running. Open {_address(listener)} (Ctrl+C stops it).")
 
     listener = _listen(host, port)
-    config = uvicorn.Config("looplab.api.app:create_app", factory=True, log_level=log_level, server_header=False)
+    config = uvicorn.Config("looplab.api.app:create_app", factory=True, log_level=log_level.value, server_header=False)
     with listener:
         Server(config).run(sockets=[listener])
+
+
+@app.command(
+    add_help_option=False,  # the benchmark explains its own options
+    context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
+)
+def bench(context: typer.Context) -> None:
+    """Measure the engine and the server against python-control, side by side; options: looplab bench --help."""
+    from looplab.bench import main as run
+
+    raise typer.Exit(run(context.args))
 
 
 def _listen(host: str, port: int) -> socket.socket:

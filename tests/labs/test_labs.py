@@ -150,6 +150,13 @@ def test_a_mistake_that_is_right_is_reported(data: dict[str, Any]) -> None:
     assert "cannot be told from the right answer" in message
 
 
+def test_tests_that_take_too_long_are_cut_short(lab: Lab) -> None:
+    outcomes = run_tests(lab, seconds=0)
+    assert len(outcomes) == 2
+    assert "not run" in outcomes[-1].message
+    assert not outcomes[-1].passed
+
+
 def test_a_number_that_does_not_exist_is_reported(data: dict[str, Any]) -> None:
     data["bench"]["plant"] = {"type": "fopdt", "K": 1, "tau": 1, "theta": 0}
     assert any("no ultimate gain" in message for message in _messages(validate_lab(data)))

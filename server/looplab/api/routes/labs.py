@@ -21,6 +21,8 @@ from looplab.schemas import Model
 
 router = APIRouter(tags=["labs"], route_class=StrictRoute)
 library = cache(Library)
+TEST_SECONDS = 5.0
+"""For the tests of a lab that is only being validated."""
 
 LabId = Annotated[str, Path(description="The lab's id, as the list has it.", examples=["ziegler-nichols-third-order"])]
 NOT_FOUND: dict[int | str, dict[str, Any]] = {404: {**ERRORS[422], "description": "There is no lab of this id."}}
@@ -66,7 +68,7 @@ def validate(
 ) -> Response:
     """What has to be repaired in a lab, with its place in the JSON; if nothing, the lab's own tests are run."""
     try:
-        tests = [asdict(outcome) for outcome in run_tests(validate_lab(lab))]
+        tests = [asdict(outcome) for outcome in run_tests(validate_lab(lab), TEST_SECONDS)]
     except LabError as error:
         return json_response({"valid": False, "problems": [asdict(p) for p in error.problems], "tests": []})
     return json_response({"valid": all(test["passed"] for test in tests), "problems": [], "tests": tests})
