@@ -12,6 +12,7 @@
 export const MEANING = {
   verdict: { name: "Stability", text: "The closed loop is stable when all its poles lie left of the imaginary axis. Margins alone do not prove it." },
   GM: { name: "Gain margin", text: "How many times the loop gain may grow before the loop oscillates for ever: 1/|L| where the phase of L is −180°. Usual: at least 2." },
+  GM_dB: { name: "Gain margin in dB", text: "The same in decibels: 20 log10 GM.", unit: "dB", decimals: 2 },
   PM_deg: { name: "Phase margin", text: "How much more phase lag the loop stands at the frequency where |L| = 1. Usual: 30° to 60°.", unit: "°", decimals: 1 },
   delay_margin: { name: "Delay margin", text: "How much extra dead time the loop stands: phase margin in radians over the crossover frequency.", unit: "time" },
   Ms: { name: "Sensitivity peak", text: "The largest |S| = |1/(1+L)|; its reciprocal is the shortest distance from the Nyquist curve to −1. Usual: 1.4 to 2." },
@@ -32,7 +33,7 @@ export const MEANING = {
   TV: { name: "Total variation of u", text: "Sum of all moves of the controller output, up and down: wear of the valve." },
 };
 
-export const MARGIN_FIELDS = ["GM", "PM_deg", "delay_margin", "Ms", "Mt", "omega_c", "omega_180"];
+export const MARGIN_FIELDS = ["GM", "GM_dB", "PM_deg", "delay_margin", "Ms", "Mt", "omega_c", "omega_180"];
 export const METRIC_FIELDS = ["final_value", "offset", "overshoot_pct", "t_peak", "peak", "t_rise", "t_settle", "decay_ratio", "IAE", "ISE", "ITAE", "TV"];
 
 /** How to read each plot. @type {Record<string, string>} */

@@ -34,6 +34,16 @@ export function formatNumber(value, digits = 3) {
 }
 
 /**
+ * A sentence as people write it: a capital at the start, a stop at the end.
+ * @param {string | null | undefined} text
+ */
+export function sentence(text) {
+  if (!text) return "";
+  const trimmed = text.trim();
+  return trimmed.charAt(0).toUpperCase() + trimmed.slice(1) + (/[.!?…]$/.test(trimmed) ? "" : ".");
+}
+
+/**
  * A fixed number of decimals, for values with a natural scale (per cent, degrees).
  * @param {number | null | undefined} value
  * @param {number} decimals

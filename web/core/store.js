@@ -30,6 +30,8 @@ export function createStore(initial) {
   let state = initial;
   /** Where the design last came to rest. */
   let rest = designOf(initial);
+  /** The run of merged changes that is going on. */
+  let run = "";
   /** @type {Design[]} */
   let past = [];
   /** @type {Design[]} */
@@ -50,6 +52,7 @@ export function createStore(initial) {
   function goTo(design) {
     state = { ...state, ...design };
     rest = design;
+    run = "";
     tell({ moving: false, design: true, view: false });
   }
 
@@ -59,11 +62,16 @@ export function createStore(initial) {
 
     get: () => state,
 
-    /** @param {Partial<Design>} patch @param {{moving?: boolean}} [options] */
-    set(patch, { moving = false } = {}) {
+    /**
+     * `merge` names a run of changes, such as the letters of one text, that undo takes back together.
+     * @param {Partial<Design>} patch
+     * @param {{moving?: boolean, merge?: string}} [options]
+     */
+    set(patch, { moving = false, merge = "" } = {}) {
       state = { ...state, ...patch };
       if (!moving && !sameDesign(rest, state)) {
-        past = [...past, rest].slice(-UNDO_DEPTH);
+        if (merge === "" || merge !== run) past = [...past, rest].slice(-UNDO_DEPTH);
+        run = merge;
         future = [];
         rest = designOf(state);
       }

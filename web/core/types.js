@@ -75,7 +75,6 @@
  * @property {string} key
  * @property {boolean} available
  * @property {string | null} reason
- * @property {number | null} K_now
  * @property {Numbers} gains
  * @property {{re: Numbers, im: Numbers}[]} branches
  * @property {Complex[]} open_loop_poles
@@ -86,7 +85,7 @@
  * @property {{re: Complex, im: Complex}} view
  */
 
-/** @typedef {{key: string, poles: Complex[], complete: boolean, reason: string | null}} PolesPanel */
+/** @typedef {{key: string, K: number | null, poles: Complex[], complete: boolean, reason: string | null}} PolesPanel */
 
 /**
  * @typedef {object} MarginsPanel

@@ -5,6 +5,7 @@
 
 import { createApi } from "../core/api.js";
 import { PLOT_IDS, SHOWN_NARROW, SHOWN_WIDE } from "../core/plots.js";
+import { sentence } from "../core/format.js";
 import { defaultState } from "../core/presets.js";
 import { startSession } from "../core/session.js";
 import { createStore } from "../core/store.js";
@@ -133,7 +134,7 @@ let troubled = false;
 startSession(store, api, {
   onStatus(status, error) {
     if (status === "waiting") toast().say(`${error.message} Trying again…`, { lasting: true });
-    else if (status === "error" && !String(error.path ?? "").includes("plant")) toast().say([error.message, error.hint].filter(Boolean).join(" "), { lasting: true });
+    else if (status === "error" && !String(error.path ?? "").includes("plant")) toast().say([error.message, error.hint].map(sentence).filter(Boolean).join(" "), { lasting: true });
     else if (troubled) toast().hush();
     troubled = status !== "ok" && !(status === "error" && String(error.path ?? "").includes("plant"));
   },

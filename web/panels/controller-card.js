@@ -2,7 +2,7 @@
 
 /** @import {Api} from "../core/api.js" */
 /** @import {Store} from "../core/store.js" */
-/** @import {ControllerState} from "../core/types.js" */
+/** @import {ControllerState, MarginsPanel} from "../core/types.js" */
 
 import { formatNumber } from "../core/format.js";
 import { fromParallel, hasDerivative, hasIntegral, parallelGains } from "../core/loop.js";
@@ -105,7 +105,7 @@ export function mount(host, store, _api) {
   function showLimits() {
     showMath(math, answers.controller?.mathml);
     const { Kc } = store.get().controller;
-    const marks = (answers.panels.margins?.phase_crossovers ?? []).map(({ GM }) => ({ value: Kc * GM, label: `limit of stability: ${formatNumber(Kc * GM)}` }));
+    const marks = limits(answers.panels.margins ?? null).map((ratio) => ({ value: Kc * ratio, label: `limit of stability: ${formatNumber(Kc * ratio)}` }));
     for (const { knob, slider } of knobs) if (knob.name === "Kc") slider.marks = marks;
   }
 
@@ -119,4 +119,15 @@ export function mount(host, store, _api) {
     stopAnswers();
     card.root.remove();
   };
+}
+
+/**
+ * The gains, as multiples of the one set, between which the loop is stable. Dead time makes ever more crossings:
+ * only those next to a stable gain are limits, and of an unstable loop the lowest.
+ * @param {MarginsPanel | null} margins
+ */
+function limits(margins) {
+  const ratios = (margins?.phase_crossovers ?? []).map(({ GM }) => GM).toSorted((a, b) => a - b);
+  if (!margins?.closed_loop_stable) return ratios.slice(0, 1);
+  return [ratios.findLast((ratio) => ratio < 1), ratios.find((ratio) => ratio > 1)].filter((ratio) => ratio !== undefined);
 }

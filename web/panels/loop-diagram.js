@@ -20,7 +20,7 @@ export function mount(host, store, _api) {
   const id = "arrow-head";
   const lines = {
     controller: [0, 1, 2, 3].map((i) => svg("text", { x: 122, y: 50 + 17 * i, class: i === 0 ? "block-title" : "block-value" })),
-    plant: [0, 1, 2].map((i) => svg("text", { x: 276, y: 54 + 18 * i, class: i === 0 ? "block-title" : "block-value" })),
+    plant: [0, 1, 2, 3].map((i) => svg("text", { x: 276, y: 50 + 17 * i, class: i === 0 ? "block-title" : "block-value" })),
   };
   const wire = (/** @type {string} */ d, /** @type {string} */ signal, head = true) => svg("path", { d, class: `wire wire-${signal}`, "marker-end": head ? `url(#${id})` : null });
   const sum = (/** @type {number} */ x, /** @type {number} */ y) => svg("circle", { cx: x, cy: y, r: 9, class: "sum" });
@@ -55,7 +55,7 @@ export function mount(host, store, _api) {
     r: block("r", { x: 2, y: 58, width: 26, height: 26 }, [text(15, 76, "r", "terminal")]),
     controller: block("controller", { x: 76, y: 28, width: 92, height: 86 }, lines.controller),
     d: block("d", { x: 183, y: 4, width: 26, height: 26 }, [text(196, 22, "d", "terminal")]),
-    plant: block("plant", { x: 224, y: 30, width: 104, height: 82 }, lines.plant),
+    plant: block("plant", { x: 224, y: 28, width: 104, height: 86 }, lines.plant),
   };
 
   const picture = svg(
@@ -87,12 +87,13 @@ export function mount(host, store, _api) {
     const rows = [...controllerRows(controller)];
     fill(lines.controller, rows, 71);
     const about = answers.plant;
-    const words = plant.type === "expr" ? plant.text : plant.type === "fopdt" ? "lag + dead time" : "second order";
-    const order = about?.order === undefined ? "" : `order ${about.order}${about.theta ? `, θ ${formatNumber(about.theta)}` : ""}`;
+    const words = plant.type === "expr" ? plant.text : plant.type === "fopdt" ? "lag, delay" : "second order";
+    const order = about?.order === undefined ? "" : `order ${about.order}`;
+    const delay = about?.theta ? `θ ${formatNumber(about.theta)}` : "";
     const title = "plant P";
-    fill(lines.plant, [title, shorten(words), order].filter(Boolean), 71);
+    fill(lines.plant, [title, shorten(words), order, delay].filter(Boolean), 71);
     set(blocks.controller, { "aria-label": `Controller: ${rows.join(", ")}` });
-    set(blocks.plant, { "aria-label": `Plant: ${words}, ${order}` });
+    set(blocks.plant, { "aria-label": `Plant: ${[words, order, delay].filter(Boolean).join(", ")}` });
     set(blocks.r, { "aria-label": "Setpoint r: choose the test" });
     set(blocks.d, { "aria-label": "Load d: choose the test" });
   }
@@ -129,5 +130,5 @@ function fill(nodes, rows, middle) {
 
 /** @param {string} text */
 function shorten(text) {
-  return text.length > 15 ? `${text.slice(0, 14)}…` : text;
+  return text.length > 13 ? `${text.slice(0, 12)}…` : text;
 }

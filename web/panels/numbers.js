@@ -4,7 +4,7 @@
 /** @import {Store} from "../core/store.js" */
 
 import { MARGIN_FIELDS, MEANING, METRIC_FIELDS, PLOT_HELP } from "../core/explain.js";
-import { formatFixed, formatNumber, UNDEFINED } from "../core/format.js";
+import { formatFixed, formatNumber, sentence, UNDEFINED } from "../core/format.js";
 import { toCsv } from "../core/csv.js";
 import { download } from "../components/data-table.js";
 import { h, setText } from "../components/dom.js";
@@ -25,7 +25,7 @@ function valueCell() {
     root,
     show(text, because) {
       const absent = text === UNDEFINED;
-      reason = because ?? "This figure does not exist for this loop.";
+      reason = sentence(because ?? "this figure does not exist for this loop");
       setText(value, absent ? "" : text);
       why.hidden = !absent;
       if (absent) hint.describe();

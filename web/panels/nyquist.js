@@ -2,9 +2,10 @@
 
 /** @import {Api} from "../core/api.js" */
 /** @import {Store} from "../core/store.js" */
+/** @import {NyquistPanel} from "../core/types.js" */
 
 import { PLOT_HELP } from "../core/explain.js";
-import { formatNumber } from "../core/format.js";
+import { formatNumber, sentence } from "../core/format.js";
 import { h } from "../components/dom.js";
 import { mountPlotPanel } from "../components/plot-panel.js";
 import "../components/segmented-control.js";
@@ -34,7 +35,7 @@ export function mount(host, store, _api) {
       const ghosts = store.snapshots.flatMap(({ panels }) => panels.nyquist ?? []);
       return nyquistPlot({ nyquist, margins: margins ?? null, whole: choice.value === "whole", ghosts }, theme, held);
     },
-    note: () => answers.panels.nyquist?.explanation ?? "",
+    note: () => (answers.panels.nyquist ? count(answers.panels.nyquist) : ""),
     table() {
       const nyquist = answers.panels.nyquist;
       if (!nyquist) return null;
@@ -47,4 +48,18 @@ export function mount(host, store, _api) {
   });
   choice.addEventListener("value-change", () => panel.redraw({ refit: true }));
   return panel.dispose;
+}
+
+/** Z = N + P with this loop's numbers, and what they count. @param {NyquistPanel} nyquist @returns {Node | string} */
+function count({ N, P, Z, explanation }) {
+  if (N === null || P === null || Z === null) return sentence(explanation);
+  const turns = N === 0 ? "no turn" : `${Math.abs(N)} ${Math.abs(N) === 1 ? "turn" : "turns"} ${N > 0 ? "clockwise" : "counter-clockwise"}`;
+  const poles = P === 0 ? "no pole" : `${P} ${P === 1 ? "pole" : "poles"}`;
+  const line = h("span", {}, h("b", {}, `Z = N + P = ${formatInteger(N)} + ${P} = ${Z}`), `: ${turns} about −1, ${poles} of L in the right half plane`);
+  return line;
+}
+
+/** @param {number} n */
+function formatInteger(n) {
+  return String(n).replace("-", "−");
 }

@@ -4,6 +4,7 @@
 /** @import {Store} from "../core/store.js" */
 /** @import {System} from "../core/types.js" */
 
+import { sentence } from "../core/format.js";
 import { PRESETS } from "../core/presets.js";
 import { createCard } from "../components/card.js";
 import { h, set, setText } from "../components/dom.js";
@@ -67,6 +68,8 @@ export function mount(host, store, _api, { open = true } = {}) {
   let built = "";
   let typing = 0;
   let typed = "";
+  let visits = 0;
+  let run = "";
 
   const groups = [...new Set(PRESETS.map(({ group }) => group))];
   attachMenu(
@@ -95,13 +98,17 @@ export function mount(host, store, _api, { open = true } = {}) {
     clearTimeout(typing);
     if (input.value === typed) return;
     typed = input.value;
-    store.set({ plant: { type: "expr", text: input.value } });
+    store.set({ plant: { type: "expr", text: input.value } }, { merge: run });
   }
   input.addEventListener("input", () => {
     clearTimeout(typing);
     typing = window.setTimeout(commit, TYPING_MS);
   });
   input.addEventListener("change", commit);
+  // One visit to the field is one step of undo.
+  input.addEventListener("focus", () => {
+    run = `plant-text-${(visits += 1)}`;
+  });
 
   /** @param {"fopdt" | "sopdt"} type */
   function build(type) {
@@ -147,7 +154,7 @@ export function mount(host, store, _api, { open = true } = {}) {
     showMath(math, answers.plant?.mathml);
     math.classList.toggle("stale", Boolean(mine));
     set(input, { "aria-invalid": mine ? "true" : null });
-    setText(error, mine ? [wrong.message, wrong.hint].filter(Boolean).join(" ") : "");
+    setText(error, mine ? [wrong.message, wrong.hint].map(sentence).filter(Boolean).join(" ") : "");
     const column = mine ? (wrong.column ?? null) : null;
     setText(caret, column === null ? "" : `${"\u00a0".repeat(Math.max(0, column - 1))}▲`);
     hint.hidden = Boolean(mine);

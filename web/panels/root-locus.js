@@ -5,7 +5,7 @@
 /** @import {Complex} from "../core/types.js" */
 
 import { PLOT_HELP } from "../core/explain.js";
-import { formatNumber } from "../core/format.js";
+import { formatNumber, sentence } from "../core/format.js";
 import { mountPlotPanel } from "../components/plot-panel.js";
 import { createFigure } from "../plots/figure.js";
 import { rootLocusPlot } from "../plots/root_locus.js";
@@ -32,8 +32,8 @@ export function mount(host, store, _api) {
     note() {
       const { root_locus: locus, poles } = answers.panels;
       const notes = [];
-      if (locus && !locus.available && locus.reason) notes.push(locus.reason);
-      if (poles && !poles.complete && poles.reason) notes.push(poles.reason);
+      if (locus && !locus.available && locus.reason) notes.push(sentence(locus.reason));
+      if (poles && !poles.complete && poles.reason) notes.push(sentence(poles.reason));
       return notes.join(" ");
     },
     table() {

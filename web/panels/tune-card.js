@@ -4,7 +4,7 @@
 /** @import {Store} from "../core/store.js" */
 /** @import {TuneAnswer, TuneSetting} from "../core/types.js" */
 
-import { formatNumber, formatWithUnit } from "../core/format.js";
+import { formatNumber, formatWithUnit, sentence } from "../core/format.js";
 import { applySetting } from "../core/loop.js";
 import { createCard } from "../components/card.js";
 import { h } from "../components/dom.js";
@@ -56,7 +56,7 @@ export function mount(host, store, api) {
       return h("p", { class: "basis" }, symbol("Ku"), ` = ${formatNumber(ultimate.Ku, 4)}, `, symbol("Pu"), ` = ${formatWithUnit(ultimate.Pu, unit, 4)}`);
     }
     if (rule.includes("cohen") && model) {
-      return h("p", { class: "basis", title: model.how }, symbol("K"), ` = ${formatNumber(model.K)}, `, symbol("tau"), ` = ${formatWithUnit(model.tau, unit)}, `, symbol("theta"), ` = ${formatWithUnit(model.theta, unit)}. ${model.how}`);
+      return h("p", { class: "basis", title: model.how }, symbol("K"), ` = ${formatNumber(model.K)}, `, symbol("tau"), ` = ${formatWithUnit(model.tau, unit)}, `, symbol("theta"), ` = ${formatWithUnit(model.theta, unit)}. ${sentence(model.how)}`);
     }
     return null;
   }
@@ -67,7 +67,7 @@ export function mount(host, store, api) {
     const refused = group.every(({ valid }) => !valid);
     const reason = group.find(({ reason: why }) => why)?.reason ?? null;
     const body = refused
-      ? h("p", { class: "refused" }, "Does not apply: ", reason ?? "the plant is outside its range.")
+      ? h("p", { class: "refused" }, "Does not apply. ", sentence(reason ?? "the plant is outside its range"))
       : h("div", { class: "rule-settings" }, ...group.map(settingRow));
     return h("section", { class: "rule", "aria-label": first?.name ?? "" }, h("h3", {}, first?.name ?? ""), refused ? null : readings, body, h("p", { class: "source" }, first?.source ?? ""));
   }
@@ -89,7 +89,7 @@ export function mount(host, store, api) {
       store.set({ controller: applySetting(setting, store.get().controller) });
       toast().say(`${setting.name}, ${type}: gains are set.`, { action: { label: "Undo", run: () => store.undo() } });
     });
-    const row = h("div", { class: "setting" }, h("div", { class: "setting-head" }, h("strong", {}, type), valid ? values : h("span", { class: "refused" }, reason ?? "does not apply"), valid ? use : null), math);
+    const row = h("div", { class: "setting" }, h("div", { class: "setting-head" }, h("strong", {}, type), valid ? values : h("span", { class: "refused" }, sentence(reason ?? "does not apply")), valid ? use : null), math);
     if (valid) row.dataset["setting"] = JSON.stringify([type, Kc, tau_I, tau_D]);
     return row;
   }

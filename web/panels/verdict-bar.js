@@ -4,7 +4,7 @@
 /** @import {Store} from "../core/store.js" */
 
 import { MEANING } from "../core/explain.js";
-import { formatFixed, formatNumber, UNDEFINED } from "../core/format.js";
+import { formatFixed, formatNumber, sentence, UNDEFINED } from "../core/format.js";
 import { h, setText } from "../components/dom.js";
 import { attachHint } from "../components/hint.js";
 import { icon } from "../components/icons.js";
@@ -57,7 +57,7 @@ export function mount(host, store, _api) {
   const row = h("div", { class: "chips" }, h("span", { class: "chip-holder" }, verdict));
   const root = h("section", { class: "verdict-bar", "aria-label": "Verdict" }, row, spoken);
   host.append(root);
-  attachHint(verdict, () => ({ title: answers.panels.verdict?.verdict ?? "…", text: MEANING["verdict"]?.text ?? "", more: answers.panels.verdict?.because ?? null }));
+  attachHint(verdict, () => ({ title: answers.panels.verdict?.verdict ?? "…", text: MEANING["verdict"]?.text ?? "", more: sentence(answers.panels.verdict?.because) }));
 
   const views = chips.map((chip) => {
     const value = h("span", { class: "chip-value" });
@@ -66,7 +66,7 @@ export function mount(host, store, _api) {
     const hint = attachHint(button, () => {
       const { name = chip.label, text = "" } = MEANING[chip.field] ?? {};
       const of = ["overshoot_pct", "t_settle", "IAE"].includes(chip.field) ? ` (${signal()} step)` : "";
-      return { title: name + of, text, more: chip.value() === UNDEFINED ? (chip.reason() ?? "It does not exist for this loop.") : null };
+      return { title: name + of, text, more: chip.value() === UNDEFINED ? sentence(chip.reason() ?? "it does not exist for this loop") : null };
     });
     return { chip, value, button, hint };
   });
@@ -90,7 +90,7 @@ export function mount(host, store, _api) {
       verdict.classList.remove("stable", "unstable", "marginal");
       verdict.classList.add(now.verdict);
     }
-    setText(because, now.because);
+    setText(because, sentence(now.because));
     if (moving) return;
     for (const { hint } of views) hint.describe();
     const summary = views.slice(0, 4).map(({ chip }) => `${MEANING[chip.field]?.name ?? chip.label} ${chip.value()}`);

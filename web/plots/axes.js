@@ -85,6 +85,19 @@ export function calmExtent(values) {
 }
 
 /**
+ * The extent of a response that runs away: it may leave the picture, or it would flatten its own beginning.
+ * @param {Numbers} values
+ * @param {number} scale  a size worth showing in any case
+ * @returns {Range}
+ */
+export function runawayExtent(values, scale) {
+  const [firstLow, firstHigh] = extent(values.slice(0, Math.ceil(values.length / 8)));
+  const reach = 3 * Math.max(scale, Math.abs(firstLow), Math.abs(firstHigh));
+  const [low, high] = extent(values);
+  return [Math.max(low, -reach), Math.min(high, reach)];
+}
+
+/**
  * What all plots have in common.
  * @param {Theme} theme
  */

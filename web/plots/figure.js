@@ -11,6 +11,9 @@
 import { linePath, toPixel } from "./path.js";
 
 const REST_MS = 120;
+/** A server that answers slowly is no rest: this many of its last intervals must pass. */
+const REST_INTERVALS = 2.5;
+const LONGEST_REST_MS = 800;
 
 const CONFIG = {
   displayModeBar: false,
@@ -59,6 +62,8 @@ export function createFigure(element) {
   let frame = 0;
   let rest = 0;
   let revision = 0;
+  let lastShown = 0;
+  let interval = 0;
   let closed = false;
 
   /** @param {Drawn["way"]} way @param {number} since */
@@ -93,7 +98,7 @@ export function createFigure(element) {
     if (drawn === signature(latest) && paint(element, latest.traces)) {
       report("fast", since);
       clearTimeout(rest);
-      rest = window.setTimeout(settle, REST_MS);
+      rest = window.setTimeout(settle, Math.min(LONGEST_REST_MS, Math.max(REST_MS, REST_INTERVALS * interval)));
     } else settle();
   }
 
@@ -105,7 +110,9 @@ export function createFigure(element) {
   return {
     /** @param {Figure} figure @param {{moving?: boolean}} [options] */
     show(figure, { moving = false } = {}) {
-      latest = figure;
+      latest = { ...figure, traces: figure.traces.map(prepared) };
+      interval = performance.now() - lastShown;
+      lastShown += interval;
       if (!moving || !drawn) settle();
       else if (!queued && frame === 0) frame = requestAnimationFrame(paintNow);
     },
@@ -130,6 +137,17 @@ export function createFigure(element) {
       plotly?.purge(element);
     },
   };
+}
+
+/**
+ * A trace as both ways can draw it. Plotly leaves out one without points, and with it the node that the fast path
+ * would fill later; and it thins out lines, by up to a pixel, which would show as a twitch when a knob comes to rest.
+ * @param {Trace} trace
+ * @returns {Trace}
+ */
+function prepared(trace) {
+  const points = trace.x.length > 0 ? trace : { ...trace, x: [null], y: [null] };
+  return { ...points, line: { simplify: false, ...trace.line } };
 }
 
 /** What has to be the same for the drawn SVG to be rewritten: traces, their kinds and axes, and the axis ranges. @param {Figure} figure */

@@ -7,7 +7,7 @@ import { axis, baseLayout, extent, holdRange } from "./axes.js";
 import { ghostLine, lineOf } from "./signals.js";
 
 /** What matters happens about −1; a curve that comes from far away (an integrator, a high gain) is cut here. */
-const NEAR = 1.6;
+const NEAR = { least: 1.6, most: 5 };
 const CIRCLE = Array.from({ length: 121 }, (_, i) => (i * Math.PI) / 60);
 
 /**
@@ -28,7 +28,7 @@ export function nyquistPlot({ nyquist, margins, whole, ghosts }, theme, held) {
   const { re, im } = nyquist;
   const mirrored = Float64Array.from(im, (value) => -value);
   const line = lineOf("L", theme);
-  const box = windowOf(nyquist, whole);
+  const box = windowOf(nyquist, whole ? Infinity : nearOf(margins));
   const ranges = {
     xaxis: holdRange(held, "xaxis", box.re[0], box.re[1]),
     yaxis: holdRange(held, "yaxis", box.im[0], box.im[1]),
@@ -75,13 +75,19 @@ export function nyquistPlot({ nyquist, margins, whole, ghosts }, theme, held) {
   };
 }
 
-/** @param {NyquistPanel} nyquist @param {boolean} whole @returns {{re: Range, im: Range}} */
-function windowOf({ re, im }, whole) {
+/** How far out the neighbourhood of −1 goes: far enough for where the curve crosses the negative real axis. @param {MarginsPanel | null} margins */
+function nearOf(margins) {
+  const reaches = (margins?.phase_crossovers ?? []).map(({ GM }) => 1.15 / GM).filter((reach) => reach < NEAR.most);
+  return Math.max(NEAR.least, ...reaches);
+}
+
+/** @param {NyquistPanel} nyquist @param {number} near @returns {{re: Range, im: Range}} */
+function windowOf({ re, im }, near) {
   /** @type {number[]} */
   const shown = [];
   for (let i = 0; i < re.length; i++) {
     const size = Math.hypot(re[i] ?? 0, im[i] ?? 0);
-    if (whole || size <= NEAR) shown.push(i);
+    if (size <= near) shown.push(i);
   }
   const pick = (/** @type {import("../core/types.js").Numbers} */ values) => shown.map((i) => values[i] ?? 0);
   const reach = Math.max(...extent(pick(im).map(Math.abs), [1]));

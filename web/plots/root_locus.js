@@ -62,7 +62,9 @@ function hold(held, name, wanted) {
 
 /** @param {Complex[]} poles @returns {{re: Range, im: Range}} */
 function viewOf(poles) {
-  const reach = Math.max(1, ...poles.map(([re, im]) => Math.max(Math.abs(re), Math.abs(im)))) * 1.15;
+  // Without a locus the slowest poles tell the story; those that dead time adds lie far out.
+  const sizes = poles.map(([re, im]) => Math.hypot(re, im)).toSorted((a, b) => a - b);
+  const reach = 1.3 * (sizes[Math.min(3, sizes.length - 1)] ?? 1);
   return { re: [-reach, reach / 3], im: [-reach, reach] };
 }
 

@@ -4,7 +4,7 @@
 /** @import {Held} from "./axes.js" */
 
 import { nearestIndex } from "../core/format.js";
-import { axis, baseLayout, calmExtent, extent, holdRange } from "./axes.js";
+import { axis, baseLayout, calmExtent, extent, holdRange, runawayExtent } from "./axes.js";
 import { escapePlotly } from "./escape.js";
 import { ghostLine, lineOf } from "./signals.js";
 
@@ -17,11 +17,6 @@ import { ghostLine, lineOf } from "./signals.js";
  * @property {StepPanel[]} ghosts
  * @property {string} timeUnit
  */
-
-/** @param {Numbers} values @param {number} share */
-function head(values, share) {
-  return values.slice(0, Math.max(2, Math.ceil(values.length * share)));
-}
 
 /**
  * @param {StepInput} input
@@ -70,10 +65,8 @@ export function stepResponse({ step, metrics, stable, signal, ghosts, timeUnit }
     },
   ];
 
-  // A response that runs away would flatten its own beginning: it may leave the picture.
-  const share = stable ? 1 : 0.6;
-  const [yLow, yHigh] = extent(head(y, share), [0, target], ...ghosts.map((ghost) => ghost[signal].y));
-  const [uLow, uHigh] = calmExtent(head(u, share));
+  const [yLow, yHigh] = extent(stable ? y : runawayExtent(y, target), [0, target]);
+  const [uLow, uHigh] = stable ? calmExtent(u) : runawayExtent(u, 0);
   const ranges = {
     xaxis: held.moving && held.ranges["xaxis"] ? held.ranges["xaxis"] : /** @type {[number, number]} */ ([0, horizon]),
     yaxis: holdRange(held, "yaxis", yLow, yHigh),

@@ -1,0 +1,94 @@
+"""The pages pass axe in light and dark, wide and narrow, open and closed; nothing is cut off."""
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Page, expect
+
+from workbench import open_workbench, settled
+
+SIZES = {"wide": {"width": 1440, "height": 900}, "narrow": {"width": 360, "height": 740}}
+ALL_PLOTS = "show=step,bode,nyquist,root_locus,sensitivity,numbers"
+
+
+def violations(page: Page) -> list[str]:
+    found = Axe().run(page).response["violations"]
+    return [f"{v['id']}: {v['help']} at {[node['html'][:120] for node in v['nodes']]}" for v in found]
+
+
+@pytest.fixture(params=["light", "dark"])
+def scheme(request: pytest.FixtureRequest, page: Page) -> str:
+    page.emulate_media(color_scheme=request.param)
+    return str(request.param)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_the_workbench_passes_axe(page: Page, scheme: str, size: str):
+    page.set_viewport_size(SIZES[size])
+    open_workbench(page, ALL_PLOTS)
+    expect(page.locator("html")).to_have_attribute("data-theme", scheme)
+    for card in ("plant", "controller", "tune", "test"):
+        toggle = page.locator(f"#card-{card} .card-toggle")
+        if toggle.get_attribute("aria-expanded") == "false":
+            toggle.click()
+    page.get_by_text("Form and action").click()
+    expect(page.locator(".rule math").first).to_be_visible()
+    settled(page)
+    assert violations(page) == []
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_the_home_page_passes_axe(page: Page, scheme: str, size: str):
+    page.set_viewport_size(SIZES[size])
+    page.goto("/")
+    expect(page.locator("html")).to_have_attribute("data-theme", scheme)
+    expect(page.locator("labs-list li").first).to_be_visible()
+    assert violations(page) == []
+
+
+@pytest.mark.parametrize("width", [360, 768, 1024, 1440, 1920])
+@pytest.mark.parametrize("path", ["/", "/workbench"])
+def test_nothing_sticks_out_at_the_side(page: Page, path: str, width: int):
+    page.set_viewport_size({"width": width, "height": 800})
+    page.goto(path)
+    expect(page.get_by_role("navigation")).to_be_visible()
+    page.wait_for_timeout(300)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def test_everything_of_the_rail_is_reached_by_tab(page: Page):
+    open_workbench(page)
+    settled(page)
+    page.locator("body").press("Tab")
+    expect(page.get_by_role("link", name="Skip to content")).to_be_focused()
+    reached = set()
+    for _ in range(45):
+        page.keyboard.press("Tab")
+        reached.add(
+            page.evaluate("document.activeElement.getAttribute('aria-label') ?? document.activeElement.textContent")
+        )
+    wanted = {
+        "Setpoint r: choose the test",
+        "controller gain Kc slider",
+        "controller gain Kc",
+        "integral time tau I, in s",
+    }
+    assert wanted <= reached, reached
+
+
+def test_a_chip_explains_itself_on_focus_and_hides_on_escape(page: Page):
+    open_workbench(page)
+    chip = page.locator(".chip-PM_deg")
+    page.locator(".chip-GM").focus()
+    page.keyboard.press("Tab")
+    expect(chip).to_be_focused()
+    hint = page.get_by_role("tooltip")
+    expect(hint).to_contain_text("Phase margin")
+    page.keyboard.press("Escape")
+    expect(hint).to_be_hidden()
+
+
+def test_motion_is_left_out_where_it_is_not_wanted(page: Page):
+    page.emulate_media(reduced_motion="reduce")
+    open_workbench(page)
+    duration = page.evaluate("getComputedStyle(document.querySelector('.button')).transitionDuration")
+    assert float(duration.split(",")[0].removesuffix("s")) < 0.001

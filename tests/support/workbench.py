@@ -1,0 +1,42 @@
+"""The workbench as its tests use it: open it, find its parts, wait until it has drawn."""
+
+from playwright.sync_api import Locator, Page, expect
+
+# Drawings are counted from the first script on, so that none is missed.
+COUNT_DRAWINGS = """
+window.drawings = [];
+addEventListener("figure-drawn", (event) => window.drawings.push({
+  panel: event.target.closest(".panel").id, way: event.detail.way, ms: event.detail.ms, at: performance.now(),
+}));
+"""
+
+
+def open_workbench(page: Page, query: str = "") -> None:
+    page.add_init_script(COUNT_DRAWINGS)
+    page.goto("/workbench" + (f"?{query}" if query else ""))
+    expect(verdict(page)).to_be_visible()
+    expect(page.locator(".panel .js-line").first).to_be_attached()
+
+
+def verdict(page: Page) -> Locator:
+    return page.locator(".verdict[data-verdict]")
+
+
+def slider(page: Page, name: str) -> Locator:
+    return page.get_by_role("slider", name=name)
+
+
+def field(page: Page, name: str) -> Locator:
+    return page.locator(f"gain-slider[name={name}] input[type=text]")
+
+
+def chip(page: Page, name: str) -> Locator:
+    return page.locator(f".chip-{name} .chip-value")
+
+
+def settled(page: Page) -> None:
+    """Waits until every plot has been drawn by Plotly after the last change and nothing more comes."""
+    before = -1
+    while (now := page.evaluate("window.drawings.length")) != before:
+        before = now
+        page.wait_for_timeout(400)
