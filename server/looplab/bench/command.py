@@ -1,0 +1,50 @@
+"""The benchmark's command line and the order in which it measures."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="looplab bench",
+        description="Times one gain move against python-control doing the same work, interleaved in one run, "
+        "compares both with exact references, and weighs the server against a bare POST.",
+    )
+    parser.add_argument("--out", type=Path, metavar="FILE.json", help="write every figure to this file")
+    parser.add_argument("--quick", action="store_true", help="few repetitions: a look, not a measurement")
+    parser.add_argument("--no-server", action="store_true", help="leave out the part that starts servers")
+    return parser
+
+
+def main(arguments: Sequence[str] = ()) -> int:
+    """Run the benchmark; 0 when it ran, whatever the ratios are."""
+    options = _parser().parse_args(list(arguments))
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    from looplab.bench import accuracy, machine, moves, report, server
+
+    console = Console()
+    rounds = 5 if options.quick else 40
+    requests = 100 if options.quick else 600
+    results: dict[str, object] = {"machine": machine.describe(), "quick": options.quick, "rounds": rounds}
+    steps = len(moves.COMPARISONS) * rounds + len(accuracy.CASES) + (0 if options.no_server else server.STEPS)
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console, transient=True) as progress:
+        task = progress.add_task("starting", total=steps)
+
+        def tick(what: str) -> None:
+            progress.update(task, description=what, advance=1)
+
+        results["accuracy"] = accuracy.measure(tick)
+        results["moves"] = moves.measure(rounds, tick)
+        results["server"] = None if options.no_server else server.measure(requests, tick)
+    report.show(console, results)
+    if options.out is not None:
+        options.out.write_text(json.dumps(results, indent=1, allow_nan=False) + "\n")
+        console.print(f"All figures: {options.out}")
+    return 0

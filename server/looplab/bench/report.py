@@ -1,0 +1,77 @@
+"""The benchmark's figures as tables."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+
+def _table(title: str, left: tuple[str, ...], right: tuple[str, ...], caption: str) -> Table:
+    table = Table(title=title, title_justify="left", caption=caption, caption_justify="left")
+    for name in left:
+        table.add_column(name)
+    for name in right:
+        table.add_column(name, justify="right")
+    return table
+
+
+def _moves(rows: list[dict[str, Any]]) -> Table:
+    notes = " ".join(f"{r['what'].capitalize()}: {r['note']}." for r in rows if r["note"])
+    caption = f"Medians in ms; quartiles of the ratio of neighbouring calls. {notes}"
+    columns = ("looplab", "python-control", "times faster", "quartiles", "goal")
+    table = _table("Looplab and python-control in turn, the same work", ("",), columns, caption)
+    loop = None
+    for r in rows:
+        if r["loop"] != loop:
+            loop = r["loop"]
+            table.add_section()
+            table.add_row(f"[bold]{loop}" + (f" (Padé {r['pade_order']} there)" if r["pade_order"] else ""))
+        spread = f"{r['ratio_q1']:.1f}–{r['ratio_q3']:.1f}"
+        medians = (f"{r[side]['median_ms']:.2f}" for side in ("ours", "peer"))
+        table.add_row(r["what"], *medians, f"{r['ratio']:.1f}", spread, f"{r['goal']:g}" if r["goal"] else "")
+    return table
+
+
+def _accuracy(rows: list[dict[str, Any]]) -> Table:
+    caption = "Unit steps of setpoint and load, the larger; reference: method of steps at 60 digits."
+    table = _table("Largest error with dead time", ("",), ("y", "u"), caption)
+    for r in rows:
+        table.add_section()
+        table.add_row(f"[bold]{r['loop']}")
+        for method, errors in r["errors"].items():
+            worst = (max(v for k, v in errors.items() if k.endswith(signal)) for signal in ("y", "u"))
+            table.add_row(method, *(f"{v:.1e}" for v in worst))
+    return table
+
+
+def _server(rows: list[dict[str, Any]]) -> Table:
+    caption = "Bare: as many bytes in and out, nothing computed. Goal: 8 times at most, worker 110 MB at most."
+    columns = ("ms", "× FastAPI", "× ASGI", "bare ms", "answer", "worker")
+    table = _table("Processor time of the server for one gain move", ("",), columns, caption)
+    for r in rows:
+        if "reason" in r:
+            table.add_row(r["plant"], r["reason"])
+            continue
+        cpu = r["cpu_ms"]
+        bare = f"{cpu['bare_fastapi']:.2f} / {cpu['bare_asgi']:.2f}"
+        ratios = (f"{r['ratio_to_bare_fastapi']:.1f}", f"{r['ratio_to_bare_asgi']:.1f}")
+        size = (f"{r['answer_bytes'] / 1e3:.0f} kB", f"{r['worker_MB']:.0f} MB")
+        table.add_row(r["plant"], f"{cpu['looplab']:.2f}", *ratios, bare, *size)
+    return table
+
+
+def show(console: Console, results: dict[str, Any]) -> None:
+    """Print the tables."""
+    machine = results["machine"]
+    packages = ", ".join(f"{name} {number}" for name, number in machine["packages"].items())
+    threads = ", ".join(sorted(set(machine["blas_threads"].values())))
+    console.print(f"Python {machine['python']}, {machine['system']}, {machine['cores']} cores, BLAS threads {threads}")
+    console.print(f"{packages}\n")
+    for table in (_moves(results["moves"]), _accuracy(results["accuracy"])):
+        console.print(table, "")
+    if results["server"]:
+        console.print(_server(results["server"]), "")
+    if results["quick"]:
+        console.print(f"Only {results['rounds']} repetitions (--quick): a look, not a measurement.")

@@ -1,0 +1,73 @@
+"""The benchmark compares like with like, writes its figures, and its exact reference is the tests' own."""
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from looplab.bench import accuracy, ours, peer
+from looplab.bench.scenarios import DELAY_FREE
+from looplab.cli import app
+from references import reference
+
+
+def walk(value: Any) -> list[float]:
+    if isinstance(value, dict):
+        return [n for v in value.values() for n in walk(v)]
+    if isinstance(value, list):
+        return [n for v in value for n in walk(v)]
+    return [value] if isinstance(value, float) else []
+
+
+@pytest.mark.slow
+def test_a_quick_run_writes_finite_figures(tmp_path: Path) -> None:
+    out = tmp_path / "bench.json"
+    result = CliRunner().invoke(app, ["bench", "--quick", "--no-server", "--out", str(out)])
+    assert result.exit_code == 0, result.output
+    figures = json.loads(out.read_text())
+    assert all(math.isfinite(n) for n in walk(figures))
+    assert {r["what"] for r in figures["moves"]} >= {"gain move, no locus", "gain move, with locus"}
+    assert "times faster" in result.output
+    for r in figures["moves"]:
+        assert r["ratio"] > 0
+    for r in figures["accuracy"]:
+        assert max(r["errors"]["looplab"].values()) < 1e-10
+        assert max(r["errors"]["python-control, Pade 5"].values()) > 1e-4
+
+
+def test_both_do_the_same_work_without_dead_time() -> None:
+    a = ours.Ours(DELAY_FREE).move(3.0, True)
+    b = peer.Peer(DELAY_FREE).move(3.0, True)
+    y, u = b["step"]
+    assert a["step"].t == pytest.approx(np.linspace(0, 30, 500))
+    for i, side in enumerate((a["step"].setpoint, a["step"].load)):
+        np.testing.assert_allclose(side.y, y[i], atol=1e-9)
+        np.testing.assert_allclose(side.u, u[i], atol=1e-8)
+    GM, PM, _, w180, wc, _ = b["margins"][0]
+    m = a["margins"]
+    assert m.GM == pytest.approx(min(GM, key=lambda g: abs(math.log(g))), rel=1e-6)
+    assert m.PM_deg == pytest.approx(PM[0], abs=1e-5)
+    assert m.omega_180 == pytest.approx(w180[-1], rel=1e-6)
+    assert m.omega_c == pytest.approx(wc[0], rel=1e-6)
+    assert m.Ms == pytest.approx(b["margins"][1], rel=1e-3)
+    for mine, (magnitude, phase) in zip(a["bode"], b["bode"], strict=True):
+        np.testing.assert_allclose(mine.mag_dB, magnitude, atol=1e-8)
+        turn = (mine.phase_deg - phase) / 360
+        np.testing.assert_allclose(turn, np.round(turn), atol=1e-8)
+    assert a["nyquist"][1].N == b["nyquist"].count
+    np.testing.assert_allclose(
+        np.sort_complex(np.round(a["poles"].poles, 6)), np.sort_complex(np.round(b["poles"], 6)), atol=2e-6
+    )
+    assert a["root_locus"].branches.shape[0] == b["root_locus"].loci.shape[1]
+
+
+def test_its_reference_is_the_exact_one() -> None:
+    known = {case["name"]: case for case in reference("delayed_loops")["cases"]}
+    for case, name in zip(accuracy.CASES, ("fopdt_PI_cohen_coon", "fopdt_PID_cohen_coon"), strict=True):
+        for side in ("setpoint", "load"):
+            for signal in ("y", "u"):
+                assert case[side][signal] == known[name][side][signal]
