@@ -38,7 +38,8 @@ def check(response: Any, path: str | None = None) -> None:
     error = Error.model_validate_json(response.content).error
     assert error.message
     assert error.code
-    assert b": NaN" not in response.content and b":NaN" not in response.content
+    assert b": NaN" not in response.content
+    assert b":NaN" not in response.content
     assert b"Traceback" not in response.content
     if path is not None:
         assert error.path == path, error

@@ -76,10 +76,10 @@
  * @property {boolean} available
  * @property {string | null} reason
  * @property {Numbers} gains
- * @property {{re: Numbers, im: Numbers}[]} branches
+ * @property {{first: number, re: Numbers, im: Numbers}[]} branches
  * @property {Complex[]} open_loop_poles
  * @property {Complex[]} open_loop_zeros
- * @property {{centroid: number | null, angles_deg: number[]}} asymptotes
+ * @property {{centroid: number | null, angles_deg: number[]} | null} [asymptotes]
  * @property {{s: Complex, K: number}[]} breakaways
  * @property {{omega: number, K: number}[]} imaginary_axis_crossings
  * @property {{re: Complex, im: Complex}} view

@@ -44,8 +44,8 @@ export function mount(host, store, _api) {
         ["open-loop pole", locus?.open_loop_poles ?? []],
         ["open-loop zero", locus?.open_loop_zeros ?? []],
       ]).flatMap(([name, points]) => points.map(([re, im]) => [name, re, im, null]));
-      const branches = (locus?.branches ?? []).flatMap(({ re, im }, n) =>
-        Array.from(re, (value, i) => [`branch ${n + 1}`, value, im[i] ?? null, locus?.gains[i] ?? null]),
+      const branches = (locus?.branches ?? []).flatMap(({ first, re, im }, n) =>
+        Array.from(re, (value, i) => [`branch ${n + 1}`, value, im[i] ?? null, locus?.gains[first + i] ?? null]),
       );
       return { header: ["what", "Re s", "Im s", "Kc"], rows: [...now, ...fixed, ...branches] };
     },

@@ -76,10 +76,10 @@ function branches(locus, theme) {
   const y = [];
   /** @type {(number | null)[]} */
   const gains = [];
-  for (const { re, im } of locus?.branches ?? []) {
+  for (const { first, re, im } of locus?.branches ?? []) {
     x.push(...re, null);
     y.push(...im, null);
-    gains.push(...(locus?.gains ?? []), null);
+    gains.push(...(locus?.gains ?? []).slice(first, first + re.length), null);
   }
   return {
     type: "scatter",
@@ -99,9 +99,9 @@ function asymptotes(locus, far, theme) {
   const x = [];
   /** @type {(number | null)[]} */
   const y = [];
-  const centre = locus?.asymptotes.centroid;
+  const centre = locus?.asymptotes?.centroid;
   if (centre !== null && centre !== undefined) {
-    for (const degrees of locus?.asymptotes.angles_deg ?? []) {
+    for (const degrees of locus?.asymptotes?.angles_deg ?? []) {
       const angle = (degrees * Math.PI) / 180;
       x.push(centre, centre + far * Math.cos(angle), null);
       y.push(0, far * Math.sin(angle), null);

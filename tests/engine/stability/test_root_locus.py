@@ -95,8 +95,8 @@ def test_branches_begin_at_poles_and_end_at_zeros_or_far_away(text: str) -> None
     assert away.size == L.relative_degree
     if away.size > 1:
         # the far ends leave along the asymptotes
-        angles = np.degrees(np.angle(away - locus.centroid))
-        gap = np.abs((angles[:, None] - locus.angles_deg[None, :] + 180) % 360 - 180)
+        angles = np.degrees(np.angle(away - locus.asymptotes.centroid))
+        gap = np.abs((angles[:, None] - locus.asymptotes.angles_deg[None, :] + 180) % 360 - 180)
         assert gap.min(axis=1).max() < 20
         assert len(set(gap.argmin(axis=1))) == away.size
 
@@ -178,9 +178,9 @@ def test_crossings_of_the_axis_in_closed_form(text: str, crossings: list[tuple[f
 
 def test_asymptotes() -> None:
     locus = root_locus(parse_transfer_function("(s+3)/(s(s+1)(s+2)(s+5))"))
-    assert locus.centroid == pytest.approx((0 - 1 - 2 - 5 + 3) / 3)
-    assert sorted(a % 360 for a in locus.angles_deg) == pytest.approx([60, 180, 300])
-    assert root_locus(parse_transfer_function("(s+3)/(s+1)")).centroid is None
+    assert locus.asymptotes.centroid == pytest.approx((0 - 1 - 2 - 5 + 3) / 3)
+    assert sorted(a % 360 for a in locus.asymptotes.angles_deg) == pytest.approx([60, 180, 300])
+    assert root_locus(parse_transfer_function("(s+3)/(s+1)")).asymptotes.centroid is None
 
 
 @effort(25)
@@ -195,10 +195,8 @@ def test_random_breakaways_are_double_roots(L: TransferFunction) -> None:
         assert abs(np.polyval(dp, b.s)) <= 1e-6 * np.polyval(np.abs(dp), abs(b.s))
 
 
-@pytest.mark.parametrize(
-    "L", [TransferFunction((), (), 2.0), TransferFunction((), (-1,), 0.0), TransferFunction((), (-1,), 1, 0.5)]
-)
-def test_what_has_no_rational_locus(L: TransferFunction) -> None:
+@pytest.mark.parametrize("L", [TransferFunction((), (), 2.0), TransferFunction((), (-1,), 0.0)])
+def test_what_has_no_locus(L: TransferFunction) -> None:
     with pytest.raises(InvalidInput) as caught:
         root_locus(L)
     assert caught.value.message

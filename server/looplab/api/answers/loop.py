@@ -84,17 +84,26 @@ class NyquistPanel(Answer):
 
 
 class Branch(Answer):
-    """One branch of the locus."""
+    """One branch of the locus; its k-th point belongs to gains[first + k]."""
 
+    first: int
     re: Numbers
     im: Numbers
 
 
 class Asymptotes(Answer):
-    """Where the asymptotes meet and their directions [deg]."""
+    """Where the asymptotes meet, their directions [deg], and with dead time the heights of horizontal ones."""
 
     centroid: float | None
     angles_deg: list[float]
+    horizontal: list[float]
+
+
+class AngleAt(Answer):
+    """Direction in which a branch leaves a complex pole or arrives at a complex zero."""
+
+    s: ComplexPair
+    angle_deg: float
 
 
 class BreakawayPoint(Answer):
@@ -131,7 +140,11 @@ class RootLocusPanel(Answer):
     asymptotes: Asymptotes | None = None
     breakaways: list[BreakawayPoint] | None = None
     imaginary_axis_crossings: list[AxisCrossingPoint] | None = None
+    departure_angles: list[AngleAt] | None = None
+    arrival_angles: list[AngleAt] | None = None
+    real_axis_segments: list[list[float | None]] | None = None
     view: View | None = None
+    complete: bool | None = None
 
 
 class PolesPanel(Answer):

@@ -5,10 +5,14 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 from looplab.api.encode import complex_pairs
 from looplab.api.panels.context import LoopContext
 from looplab.engine.errors import EngineError
 from looplab.engine.stability import closed_loop_poles, root_locus
+from looplab.engine.stability.locus import Angle
 
 
 def verdict(context: LoopContext) -> dict[str, Any]:
@@ -27,6 +31,17 @@ def poles(context: LoopContext) -> dict[str, Any]:
     }
 
 
+def _branch(branch: npt.NDArray[np.complex128]) -> dict[str, Any]:
+    """The part of a branch inside the picture, with the index of its first gain."""
+    there = np.flatnonzero(np.isfinite(branch))
+    part = branch[there[0] : there[-1] + 1]
+    return {"first": int(there[0]), "re": part.real.copy(), "im": part.imag.copy()}
+
+
+def _angle(angle: Angle) -> dict[str, Any]:
+    return {"s": [angle.s.real, angle.s.imag], "angle_deg": angle.angle_deg}
+
+
 def locus(context: LoopContext) -> dict[str, Any]:
     """The root locus over the controller's gain; unavailable with the reason where it cannot be drawn."""
     try:
@@ -37,11 +52,19 @@ def locus(context: LoopContext) -> dict[str, Any]:
         "available": True,
         "reason": None,
         "gains": result.gains,
-        "branches": [{"re": b.real.copy(), "im": b.imag.copy()} for b in result.branches],
+        "branches": [_branch(branch) for branch in result.branches],
+        "complete": result.complete,
         "open_loop_poles": complex_pairs(result.open_loop_poles),
         "open_loop_zeros": complex_pairs(result.open_loop_zeros),
-        "asymptotes": {"centroid": result.centroid, "angles_deg": result.angles_deg.tolist()},
+        "asymptotes": {
+            "centroid": result.asymptotes.centroid,
+            "angles_deg": result.asymptotes.angles_deg.tolist(),
+            "horizontal": result.asymptotes.horizontal.tolist(),
+        },
         "breakaways": [{"s": [b.s.real, b.s.imag], "K": b.K} for b in result.breakaways],
         "imaginary_axis_crossings": [{"omega": c.omega, "K": c.K} for c in result.imaginary_axis_crossings],
+        "departure_angles": [_angle(a) for a in result.departure_angles],
+        "arrival_angles": [_angle(a) for a in result.arrival_angles],
+        "real_axis_segments": [list(segment) for segment in result.real_axis_segments],
         "view": {"re": list(result.view[0]), "im": list(result.view[1])},
     }

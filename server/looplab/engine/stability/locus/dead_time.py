@@ -1,0 +1,197 @@
+"""Branches of a root locus with exact dead time: infinitely many poles, those in a window followed over the gain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from looplab.engine.stability.delay_line import chebyshev_differentiation
+from looplab.engine.stability.locus.count import count_in_rectangle
+from looplab.engine.stability.polish import polish_closed_loop_poles
+from looplab.engine.systems.realization import realize
+from looplab.engine.systems.transfer_function import TransferFunction
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+MAX_NODES = 110
+MAX_GAINS = 400
+CHECKS = 5
+
+
+@dataclass(frozen=True)
+class Rectangle:
+    """Part of the s-plane [rad/time]."""
+
+    left: float
+    right: float
+    top: float
+
+    def contains(self, s: ComplexArray) -> npt.NDArray[np.bool_]:
+        """Which points lie inside; it is symmetric about the real axis."""
+        return np.asarray((s.real > self.left) & (s.real < self.right) & (np.abs(s.imag) < self.top))
+
+
+class Collocation:
+    """The loop with its dead time as a delay line at Chebyshev points: M0 + K M1 has eigenvalues near the poles."""
+
+    def __init__(self, L: TransferFunction, nodes: int) -> None:
+        ss = realize(L)
+        n = ss.B.size
+        D = chebyshev_differentiation(nodes) / L.theta
+        self.L = L
+        self.fixed = np.zeros((n + nodes, n + nodes))
+        self.fixed[:n, :n] = ss.A
+        self.fixed[n:, n:] = -D[1:, 1:]
+        self.fixed[n:, :n] = -np.outer(D[1:, 0], ss.C)
+        self.per_gain = np.zeros_like(self.fixed)
+        self.per_gain[:n, -1] = -ss.B
+        self.per_gain[n:, -1] += D[1:, 0] * ss.D
+
+    def poles(self, gains: FloatArray, inside: Rectangle) -> list[ComplexArray]:
+        """Exact closed-loop poles in the rectangle, for each gain."""
+        M = self.fixed + gains[:, None, None] * self.per_gain
+        found = np.linalg.eigvals(M).astype(complex)
+        near = np.abs(found) < 2.0 * (np.hypot(max(abs(inside.left), inside.right), inside.top))
+        found = np.where(near, found, np.nan)
+        polished, good = polish_closed_loop_poles(self.L, found, gains[:, None], steps=6)
+        good &= inside.contains(polished)
+        return [_distinct(row[ok]) for row, ok in zip(polished, good, strict=True)]
+
+
+def _distinct(poles: ComplexArray) -> ComplexArray:
+    """Without the copies that Newton made of one root, and with exact conjugates."""
+    upper = poles[poles.imag > 1e-7 * np.abs(poles)]
+    real = poles[np.abs(poles.imag) <= 1e-7 * np.abs(poles)].real.astype(complex)
+    kept: list[complex] = []
+    for s in np.concatenate([real, upper]):
+        if all(abs(s - other) > 1e-6 * max(abs(s), 1e-9) for other in kept):
+            kept += [s] if s.imag == 0 else [s, s.conjugate()]
+    return np.array(kept, dtype=complex)
+
+
+def _match(guess: ComplexArray, points: ComplexArray, gate: float) -> list[tuple[int, int]]:
+    """Pairs (guess, point), nearest first, each used once."""
+    if not guess.size or not points.size:
+        return []
+    gap = np.abs(guess[:, None] - points[None, :])
+    pairs: list[tuple[int, int]] = []
+    for flat in np.argsort(gap, axis=None):
+        i, j = divmod(int(flat), points.size)
+        if gap[i, j] > gate:
+            break
+        if all(i != a and j != b for a, b in pairs):
+            pairs.append((i, j))
+    return pairs
+
+
+def _join(L: TransferFunction, gains: FloatArray, rows: list[ComplexArray], gate: float) -> ComplexArray:
+    """Branches as rows of an array with NaN where a branch is outside, shape (branches, gains)."""
+    columns: list[ComplexArray] = []
+    alive: list[int] = []
+    for i, row in enumerate(rows):
+        guess = np.array([columns[b][i - 1] for b in alive], dtype=complex)
+        if i > 1 and gains[i - 1] > 0 and guess.size:
+            with np.errstate(all="ignore"):
+                slope = -np.log(gains[i] / gains[i - 1]) / L.log_derivative(guess)
+            small = np.abs(slope) < gate
+            guess = guess + np.where(small, slope, 0.0)
+        pairs = _match(guess, row, gate)
+        now: list[int] = []
+        for a, j in pairs:
+            columns[alive[a]][i] = row[j]
+            now.append(alive[a])
+        matched = {j for _, j in pairs}
+        for j in range(row.size):
+            if j not in matched:
+                columns.append(np.full(len(rows), np.nan, dtype=complex))
+                columns[-1][i] = row[j]
+                now.append(len(columns) - 1)
+        alive = now
+    kept = [c for c in columns if np.count_nonzero(np.isfinite(c)) > 1]
+    return np.array(kept, dtype=complex).reshape(len(kept), len(rows))
+
+
+def _coarse(branches: ComplexArray, size: float) -> npt.NDArray[np.bool_]:
+    """Intervals of the gain in which some branch jumps or turns, shape (gains-1,)."""
+    far: npt.NDArray[np.bool_]
+    with np.errstate(all="ignore"):
+        step = np.diff(branches, axis=1)
+        far = np.asarray((np.abs(step) > 0.05 * size).any(axis=0))
+        turn = np.abs(np.angle(step[:, 1:] / step[:, :-1]))
+        bend = ((turn > 0.2) & (np.minimum(np.abs(step[:, 1:]), np.abs(step[:, :-1])) > 0.006 * size)).any(axis=0)
+    far[:-1] |= bend
+    far[1:] |= bend
+    return far
+
+
+def dead_time_branches(
+    L: TransferFunction, gains: FloatArray, inside: Rectangle, size: float
+) -> tuple[FloatArray, ComplexArray, bool]:
+    """Branches inside a rectangle.
+
+    Parameters
+    ----------
+    L : TransferFunction
+        Open loop for K = 1 with dead time.
+    gains : ndarray
+        Increasing from 0; more are added where a branch jumps or turns.
+    inside : Rectangle
+        Where poles are followed.
+    size : float
+        Size of the picture [rad/time].
+
+    Returns
+    -------
+    gains : ndarray, shape (m,)
+    branches : ndarray of complex, shape (n, m)
+        NaN where a branch is outside.
+    proved : bool
+        The argument principle found as many poles as were followed, at five gains.
+    """
+    L, hidden = _without_hidden(L)
+    nodes = int(min(16 + np.ceil(1.6 * L.theta * np.hypot(inside.top, inside.left)), MAX_NODES))
+    line = Collocation(L, nodes)
+    positive = gains[gains > 0]
+    rows = line.poles(positive, inside)
+    gate = 0.3 * size
+    for _ in range(4):
+        branches = _join(L, positive, rows, gate)
+        coarse = _coarse(branches, size)
+        if not coarse.any() or positive.size > MAX_GAINS:
+            break
+        extra = np.sqrt(positive[:-1][coarse] * positive[1:][coarse])
+        rows += line.poles(extra, inside)
+        positive = np.concatenate([positive, extra])
+        order = np.argsort(positive, kind="stable")
+        positive, rows = positive[order], [rows[k] for k in order]
+    proved = _proved(line, positive, inside)
+    start = L.poles[inside.contains(L.poles)]
+    gains = np.concatenate([[0.0], positive])
+    branches = _join(L, gains, [start.astype(complex), *rows], gate)
+    stay = np.tile(hidden[inside.contains(hidden)][:, None], (1, gains.size))
+    return gains, np.concatenate([branches, stay]), proved
+
+
+def _without_hidden(L: TransferFunction) -> tuple[TransferFunction, ComplexArray]:
+    """L less its cancelling pairs of a pole and a zero, and those poles: they stay where they are for every gain."""
+    zeros, poles = L.zeros.tolist(), L.poles.tolist()
+    hidden = []
+    for z in L.zeros.tolist():
+        if z in poles:
+            zeros.remove(z)
+            poles.remove(z)
+            hidden.append(z)
+    return TransferFunction(zeros, poles, L.gain, L.theta), np.array(hidden, dtype=complex)
+
+
+def _proved(line: Collocation, gains: FloatArray, inside: Rectangle) -> bool:
+    # A little beside the gains of the grid, some of which have double poles.
+    some = gains[np.linspace(0, gains.size - 1, CHECKS).astype(int)] * 1.0037
+    for K, row in zip(some, line.poles(some, inside), strict=True):
+        count = count_in_rectangle(line.L, float(K), inside.left, inside.right, -inside.top, inside.top)
+        if count is not None and count != row.size:
+            return False
+    return True
