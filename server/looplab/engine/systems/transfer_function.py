@@ -188,9 +188,9 @@ class TransferFunction:
         Zeros and poles are multiplied in alternation, so that order 50 neither overflows nor underflows.
         """
         s_array = np.asarray(s, dtype=complex)
-        value = self.gain * np.exp(-self.theta * s_array)
         both = min(self.zeros.size, self.poles.size)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            value = self.gain * np.exp(-self.theta * s_array)
             for z, p in zip(self.zeros[:both], self.poles[:both], strict=True):
                 value = value * ((s_array - z) / (s_array - p))
             for z in self.zeros[both:]:

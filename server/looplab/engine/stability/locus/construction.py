@@ -14,6 +14,8 @@ from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+# Half height of the picture in units of 1/theta.
+WIDEST_IN_DEAD_TIMES = 10.0
 Window = tuple[tuple[float, float], tuple[float, float]]
 
 
@@ -233,6 +235,10 @@ def window(
     first = sorted(c.omega for c in crossed if 0 < c.omega <= reach * slow)[:1]
     points = np.array([*shown, *(1j * w for w in first)])
     half = 1.4 * max(float(np.abs(points.imag).max(initial=0.0)), 0.8 * slow)
+    if L.theta:
+        # Roots much faster than the dead time are left outside, or its endless chain of poles would fill the picture.
+        half = min(half, WIDEST_IN_DEAD_TIMES / L.theta)
+        points = points[np.abs(points) <= 1.5 * half]
     left, right = min(float(points.real.min(initial=0.0)), 0.0), max(float(points.real.max(initial=0.0)), 0.0)
     pad = 0.35 * half
     return (min(left - pad, -0.9 * half), right + pad), (-half, half)

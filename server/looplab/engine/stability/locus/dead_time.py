@@ -152,8 +152,10 @@ def dead_time_branches(
         The argument principle found as many poles as were followed, at five gains.
     """
     L, hidden = _without_hidden(L)
-    nodes = int(min(16 + np.ceil(1.6 * L.theta * np.hypot(inside.top, inside.left)), MAX_NODES))
+    nodes = int(min(12 + np.ceil(L.theta * np.hypot(inside.top, inside.left)), MAX_NODES))
     line = Collocation(L, nodes)
+    if not _proved(line, gains[gains > 0], inside):
+        line = Collocation(L, min(2 * nodes, MAX_NODES))
     positive = gains[gains > 0]
     rows = line.poles(positive, inside)
     gate = 0.3 * size
