@@ -138,4 +138,8 @@ def _delay_gains(L: TransferFunction, marks: list[float], inside: Rectangle) -> 
     low, high = 0.3 * float(around.min()), float(around.max())
     if marks:
         low, high = max(low, min(marks) * 1e-6), min(high, max(marks) * 1e4)
+    # Branches leave a repeated pole fast: the first gain must not throw them far.
+    start = L.poles[inside.contains(L.poles)] + 0.02 * inside.top
+    near = np.abs(L(start)) if start.size else np.zeros(0)
+    low = min([low, *(1.0 / near[np.isfinite(near) & (near > 0)])])
     return np.unique(np.concatenate([[0.0], np.geomspace(low, max(high, 2 * low), START_GAINS), marks]))
