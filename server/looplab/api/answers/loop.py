@@ -69,10 +69,9 @@ class BodePanel(Answer):
     C: BodeCurve | None
 
 
-class NyquistPanel(Answer):
-    """L(j omega) for omega > 0, and Z = N + P; N and Z are null when infinite."""
+class NyquistAnswer(Answer):
+    """L(j omega) for omega > 0, and Z = N + P; N and Z are null when infinite or not defined."""
 
-    key: str
     omega: Numbers
     re: Numbers
     im: Numbers
@@ -81,6 +80,12 @@ class NyquistPanel(Answer):
     Z: int | None
     closed_loop_stable: bool
     explanation: str
+
+
+class NyquistPanel(NyquistAnswer):
+    """The same, with its key."""
+
+    key: str
 
 
 class Branch(Answer):
@@ -127,10 +132,9 @@ class View(Answer):
     im: list[float]
 
 
-class RootLocusPanel(Answer):
-    """Closed-loop poles over the controller's gain; only key, available and reason where it cannot be drawn."""
+class RootLocusAnswer(Answer):
+    """Closed-loop poles over the controller's gain; only available and reason where it cannot be drawn."""
 
-    key: str
     available: bool
     reason: str | None
     gains: Numbers | None = None
@@ -145,6 +149,12 @@ class RootLocusPanel(Answer):
     real_axis_segments: list[list[float | None]] | None = None
     view: View | None = None
     complete: bool | None = None
+
+
+class RootLocusPanel(RootLocusAnswer):
+    """The same, with its key."""
+
+    key: str
 
 
 class PolesPanel(Answer):
@@ -171,10 +181,9 @@ class PhaseCrossoverPoint(Answer):
     GM: float
 
 
-class MarginsPanel(Answer):
+class MarginsAnswer(Answer):
     """Margins; null with a reason when infinite or undefined."""
 
-    key: str
     closed_loop_stable: bool
     GM: float | None
     GM_dB: float | None
@@ -189,6 +198,12 @@ class MarginsPanel(Answer):
     gain_crossovers: list[GainCrossoverPoint]
     phase_crossovers: list[PhaseCrossoverPoint]
     reasons: Reasons
+
+
+class MarginsPanel(MarginsAnswer):
+    """The same, with its key."""
+
+    key: str
 
 
 class StepMetricsAnswer(Answer):

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from looplab.api.open_loop import nyquist_words
 from looplab.api.panels.context import LoopContext
 from looplab.engine.frequency import Bode, bode, margins, nyquist_count, nyquist_curve
 
@@ -34,16 +35,6 @@ def nyquist(context: LoopContext) -> dict[str, Any]:
     """The Nyquist curve with N, P and Z = N + P written out."""
     L = context.loop.open_loop
     curve, count = nyquist_curve(L), nyquist_count(L)
-    if count.Z is None:
-        explanation = str(count.reason)
-    else:
-        turns = f"{abs(count.N or 0)} {'clockwise' if (count.N or 0) >= 0 else 'counter-clockwise'}"
-        explanation = (
-            f"Z = N + P = {count.N} + {count.P} = {count.Z}: the curve encircles -1 {turns} time(s), "
-            f"L has {count.P} pole(s) in the right half-plane"
-        )
-        if count.reason:
-            explanation += f"; {count.reason}"
     return {
         "omega": curve.omega,
         "re": curve.re,
@@ -52,7 +43,7 @@ def nyquist(context: LoopContext) -> dict[str, Any]:
         "P": count.P,
         "Z": count.Z,
         "closed_loop_stable": context.verdict.closed_loop_stable,
-        "explanation": explanation,
+        "explanation": nyquist_words(L),
     }
 
 

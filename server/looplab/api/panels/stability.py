@@ -13,6 +13,7 @@ from looplab.api.panels.context import LoopContext
 from looplab.engine.errors import EngineError
 from looplab.engine.stability import closed_loop_poles, root_locus
 from looplab.engine.stability.locus import Angle
+from looplab.engine.systems import TransferFunction
 
 
 def verdict(context: LoopContext) -> dict[str, Any]:
@@ -44,8 +45,13 @@ def _angle(angle: Angle) -> dict[str, Any]:
 
 def locus(context: LoopContext) -> dict[str, Any]:
     """The root locus over the controller's gain; unavailable with the reason where it cannot be drawn."""
+    return locus_answer(context.locus_system)
+
+
+def locus_answer(L: TransferFunction) -> dict[str, Any]:
+    """The root locus of an open loop as it is sent."""
     try:
-        result = root_locus(context.locus_system)
+        result = root_locus(L)
     except EngineError as error:
         return {"available": False, "reason": error.message}
     return {
