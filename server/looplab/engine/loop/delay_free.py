@@ -9,7 +9,9 @@ from scipy.linalg import expm
 FloatArray = npt.NDArray[np.float64]
 
 
-def delay_free_response(A: FloatArray, C: FloatArray, x0: FloatArray, h: float, count: int) -> FloatArray:
+def delay_free_response(
+    A: FloatArray, C: FloatArray, x0: FloatArray, h: float, count: int, step: FloatArray | None = None
+) -> FloatArray:
     """Outputs C x of x' = A x at t = 0, h, 2h, ...
 
     Parameters
@@ -23,13 +25,15 @@ def delay_free_response(A: FloatArray, C: FloatArray, x0: FloatArray, h: float, 
         Sampling interval [time].
     count : int
         Number of samples.
+    step : ndarray, shape (n, n), or None
+        exp(A h) where the caller has it already.
 
     Returns
     -------
     ndarray, shape (count, p, c)
     """
     n, c = x0.shape
-    power = expm(A * h)
+    power = expm(A * h) if step is None else step
     states = np.empty((n, count, c))
     states[:, 0] = x0
     done = 1
