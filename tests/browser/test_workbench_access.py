@@ -1,18 +1,12 @@
 """The pages pass axe in light and dark, wide and narrow, open and closed; nothing is cut off."""
 
 import pytest
-from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, expect
 
-from workbench import open_workbench, settled
+from workbench import open_workbench, settled, violations
 
 SIZES = {"wide": {"width": 1440, "height": 900}, "narrow": {"width": 360, "height": 740}}
 ALL_PLOTS = "show=step,bode,nyquist,root_locus,sensitivity,numbers"
-
-
-def violations(page: Page) -> list[str]:
-    found = Axe().run(page).response["violations"]
-    return [f"{v['id']}: {v['help']} at {[node['html'][:120] for node in v['nodes']]}" for v in found]
 
 
 @pytest.fixture(params=["light", "dark"])

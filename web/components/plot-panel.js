@@ -71,9 +71,17 @@ export function mountPlotPanel(host, store, options) {
   let theme = readTheme();
   /** @type {HTMLElement | null} */
   let table = null;
+  let drawnPlant = "";
 
   /** @param {boolean} moving */
   function draw(moving) {
+    const { plant } = store.get();
+    const named = plant.type === "expr" ? plant.text : plant.type;
+    // Another plant has axes of its own; they hold only while the same one is tuned.
+    if (!moving && named !== drawnPlant && store.answers.error === null) {
+      ranges = {};
+      drawnPlant = named;
+    }
     const next = options.draw(theme, { ranges, moving });
     root.classList.toggle("stale", store.answers.error !== null);
     if (!next) return;

@@ -34,6 +34,14 @@ export function formatNumber(value, digits = 3) {
 }
 
 /**
+ * What stands for a figure that is not a number: infinity where the reason says so, else a dash.
+ * @param {string | null | undefined} reason
+ */
+export function formatAbsent(reason) {
+  return /^infinite\b/i.test(reason ?? "") ? "∞" : UNDEFINED;
+}
+
+/**
  * A sentence as people write it: a capital at the start, a stop at the end.
  * @param {string | null | undefined} text
  */

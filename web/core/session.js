@@ -2,8 +2,9 @@
 
 /** @import {Api} from "./api.js" */
 /** @import {Store} from "./store.js" */
-/** @import {PanelName, State} from "./types.js" */
+/** @import {State} from "./types.js" */
 
+import { runawayHorizon, settledHorizon } from "./horizon.js";
 import { loopOf } from "./loop.js";
 import { createTransport } from "./transport.js";
 
@@ -43,8 +44,36 @@ export function startSession(store, api, { onStatus = () => {} } = {}) {
     };
   }
 
+  /** The time axis found for a plant, so that it holds as long as it suits. */
+  let axis = { plant: "", horizon: /** @type {number | null} */ (null) };
+
+  /**
+   * At rest the figures are computed over the server's own horizon, which depends on the plant alone, and the
+   * curves over a time axis that suits the response.
+   * @param {Ask} ask
+   */
+  async function send(ask) {
+    const whole = request(ask);
+    if (ask.moving || ask.state.horizon !== null || !whole.want.includes("step")) return api.loop(whole);
+    const judged = new Set([...whole.want, "verdict", "metrics"]);
+    judged.delete("step");
+    const figures = await api.loop({ ...whole, want: [...judged] });
+    const plant = JSON.stringify(ask.state.plant);
+    const verdict = figures.panels.verdict ?? answers.panels.verdict;
+    const suits = verdict?.closed_loop_stable ? settledHorizon(figures.panels.metrics ?? answers.panels.metrics, axis.plant === plant ? axis.horizon : null) : null;
+    /** @param {number | null} horizon */
+    const curves = async (horizon) => {
+      const { panels, unchanged } = await api.loop({ ...whole, want: ["step"], horizon });
+      axis = { plant, horizon: (panels.step ?? answers.panels.step)?.horizon ?? null };
+      return { ...figures, panels: { ...figures.panels, ...panels }, unchanged: [...figures.unchanged, ...unchanged] };
+    };
+    const first = await curves(suits);
+    const grows = verdict && !verdict.closed_loop_stable && first.panels.step ? runawayHorizon(first.panels.step) : null;
+    return grows === null ? first : curves(grows);
+  }
+
   const transport = createTransport({
-    send: (/** @type {Ask} */ ask) => api.loop(request(ask)),
+    send,
     onAnswer(answer, { moving }) {
       answers.accept(answer, moving);
       onStatus("ok", null);
@@ -85,6 +114,3 @@ export function startSession(store, api, { onStatus = () => {} } = {}) {
     transport.close();
   };
 }
-
-/** @type {PanelName[]} */
-export const ALL_PANELS = ["verdict", "step", "bode", "nyquist", "root_locus", "poles", "margins", "metrics", "sensitivity"];

@@ -4,7 +4,7 @@
 /** @import {Store} from "../core/store.js" */
 
 import { MARGIN_FIELDS, MEANING, METRIC_FIELDS, PLOT_HELP } from "../core/explain.js";
-import { formatFixed, formatNumber, sentence, UNDEFINED } from "../core/format.js";
+import { formatAbsent, formatFixed, formatNumber, sentence, UNDEFINED } from "../core/format.js";
 import { toCsv } from "../core/csv.js";
 import { download } from "../components/data-table.js";
 import { h, setText } from "../components/dom.js";
@@ -17,16 +17,18 @@ import { icon } from "../components/icons.js";
  */
 function valueCell() {
   const value = h("span", { class: "value" });
-  const why = h("button", { type: "button", class: "why", hidden: true }, UNDEFINED);
+  const why = h("button", { type: "button", class: "why", hidden: true });
   const root = h("td", {}, value, why);
   let reason = "";
   const hint = attachHint(why, () => ({ title: "Undefined", text: reason }));
   return {
     root,
-    show(text, because) {
-      const absent = text === UNDEFINED;
+    show(figure, because) {
+      const text = figure === UNDEFINED ? formatAbsent(because) : figure;
+      const absent = figure === UNDEFINED;
       reason = sentence(because ?? "this figure does not exist for this loop");
       setText(value, absent ? "" : text);
+      setText(why, text);
       why.hidden = !absent;
       if (absent) hint.describe();
     },

@@ -15,7 +15,7 @@ import { toast } from "../components/status-toast.js";
 /** @param {HTMLElement} host @param {Store} store @param {Api} api @returns {() => void} */
 export function mount(host, store, api) {
   const { answers } = store;
-  const out = h("div", { class: "rules", "aria-live": "polite" });
+  const out = h("div", { class: "rules" });
   /** The plant that the rules shown are for. */
   let shownFor = "";
   const card = createCard(host, { id: "card-tune", title: "Tune", open: false, onToggle: (open) => open && void ask() });

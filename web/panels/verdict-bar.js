@@ -4,7 +4,7 @@
 /** @import {Store} from "../core/store.js" */
 
 import { MEANING } from "../core/explain.js";
-import { formatFixed, formatNumber, sentence, UNDEFINED } from "../core/format.js";
+import { formatAbsent, formatFixed, formatNumber, sentence, UNDEFINED } from "../core/format.js";
 import { h, setText } from "../components/dom.js";
 import { attachHint } from "../components/hint.js";
 import { icon } from "../components/icons.js";
@@ -29,10 +29,10 @@ export function mount(host, store, _api) {
     {
       field: "GM",
       label: "GM",
-      value: () => (margins()?.GM == null ? UNDEFINED : `${formatNumber(margins()?.GM)} (${formatFixed(margins()?.GM_dB, 1)} dB)`),
+      value: () => (margins()?.GM == null ? formatAbsent(margins()?.reasons["GM"]) : `${formatNumber(margins()?.GM)} (${formatFixed(margins()?.GM_dB, 1)} dB)`),
       reason: () => margins()?.reasons["GM"] ?? null,
     },
-    { field: "PM_deg", label: "PM", value: () => unit(formatFixed(margins()?.PM_deg, 1), "°", ""), reason: () => margins()?.reasons["PM_deg"] ?? null },
+    { field: "PM_deg", label: "PM", value: () => (margins()?.PM_deg == null ? formatAbsent(margins()?.reasons["PM_deg"]) : unit(formatFixed(margins()?.PM_deg, 1), "°", "")), reason: () => margins()?.reasons["PM_deg"] ?? null },
     { field: "Ms", label: "Ms", value: () => formatNumber(margins()?.Ms), reason: () => margins()?.reasons["Ms"] ?? null },
     {
       field: "overshoot_pct",
@@ -66,10 +66,18 @@ export function mount(host, store, _api) {
     const hint = attachHint(button, () => {
       const { name = chip.label, text = "" } = MEANING[chip.field] ?? {};
       const of = ["overshoot_pct", "t_settle", "IAE"].includes(chip.field) ? ` (${signal()} step)` : "";
-      return { title: name + of, text, more: chip.value() === UNDEFINED ? sentence(chip.reason() ?? "it does not exist for this loop") : null };
+      return { title: name + of, text, more: noteOn(chip) };
     });
     return { chip, value, button, hint };
   });
+
+  /** @param {Chip} chip */
+  function noteOn({ field, value, reason }) {
+    if (reason()) return sentence(reason());
+    if (value() === UNDEFINED) return "It does not exist for this loop.";
+    const { GM = null, closed_loop_stable = false } = margins() ?? {};
+    return field === "GM" && GM !== null && GM < 1 && closed_loop_stable ? "Below 1 it is a lower limit: so far the gain may fall before the loop is lost." : null;
+  }
 
   let shown = "";
   /** @param {boolean} moving */

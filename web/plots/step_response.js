@@ -79,7 +79,7 @@ export function stepResponse({ step, metrics, stable, signal, ghosts, timeUnit }
       ...baseLayout(theme),
       xaxis: axis(theme, `time [${unit}]`, ranges.xaxis, { anchor: "y2", zeroline: false, nticks: 9 }),
       yaxis: axis(theme, "y", ranges.yaxis, { domain: [0.41, 1] }),
-      yaxis2: axis(theme, "u", ranges.yaxis2, { domain: [0, 0.34], nticks: 4 }),
+      yaxis2: axis(theme, "u", ranges.yaxis2, { domain: [0, 0.34], nticks: 5 }),
     },
   };
 }
