@@ -66,7 +66,9 @@ def rhp_closed_loop_poles(
     size = max([abs(r) for r in [*zeros, *poles]], default=0.0) + abs(shift)
     excess = len(poles) - len(zeros)
     if excess == 0:
-        room = abs(1 - abs(gain)) if theta else abs(1 + gain)
+        room = 1 - abs(gain) if theta else abs(1 + gain)
+        if room <= 0:
+            raise ValueError("infinitely many, or a root at infinity")
         radius = 20.0 * (size + 1.0) * (1 + len(poles)) / room
     else:
         lift = math.exp(-theta * min(shift, 0.0))
