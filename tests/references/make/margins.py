@@ -170,7 +170,7 @@ def peak(f, grid):
 
 
 def limits(L):
-    """|S| and |T| for omega to 0 and to infinity (with dead time and |L(inf)| > 0: the largest, approached for ever)."""
+    """|S| and |T| for omega to 0 and to infinity (with dead time and |L(inf)| > 0: the supremum)."""
     order = sum(p == 0 for p in L.p) - sum(z == 0 for z in L.z)
     ends = {}
     if order:
