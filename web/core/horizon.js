@@ -3,8 +3,10 @@
 /** @import {Metrics, MetricsPanel, StepPanel} from "./types.js" */
 
 const ROUND = [1, 2, 3, 5, 8, 10];
-/** The axis is this many settling times long, and is kept while it is between the two others. */
-const SETTLING_TIMES = { best: 2, least: 1.25, most: 5 };
+/** How many settling times to watch: the setpoint response is the one looked at most, the load's has the longer tail. */
+const SETTLING_TIMES = { setpoint: 2, load: 1.3 };
+/** An axis is kept while it is between these parts of what would be best. */
+const WORTH_KEEPING = { least: 0.65, most: 2.5 };
 /** A growing response has shown what it does when it is this many times the setpoint. */
 const GROWN = 20;
 
@@ -25,10 +27,10 @@ export function settledHorizon(metrics, held) {
   const times = [metrics?.setpoint, metrics?.load].map((/** @type {Metrics | undefined} */ m) => m?.t_settle ?? null);
   const [setpoint, load] = times;
   if (setpoint == null || load == null) return null;
-  const settled = Math.max(setpoint, load);
-  if (!(settled > 0)) return null;
-  if (held !== null && held >= SETTLING_TIMES.least * settled && held <= SETTLING_TIMES.most * settled) return held;
-  return roundUp(SETTLING_TIMES.best * settled);
+  const best = Math.max(SETTLING_TIMES.setpoint * setpoint, SETTLING_TIMES.load * load);
+  if (!(best > 0)) return null;
+  if (held !== null && held >= WORTH_KEEPING.least * best && held <= WORTH_KEEPING.most * best) return held;
+  return roundUp(best);
 }
 
 /**

@@ -79,7 +79,7 @@
  * @property {{first: number, re: Numbers, im: Numbers}[]} branches
  * @property {Complex[]} open_loop_poles
  * @property {Complex[]} open_loop_zeros
- * @property {{centroid: number | null, angles_deg: number[]} | null} [asymptotes]
+ * @property {{centroid: number | null, angles_deg: number[], horizontal?: number[]} | null} [asymptotes]  horizontal ones, at these Im s, come with dead time
  * @property {{s: Complex, K: number}[]} breakaways
  * @property {{omega: number, K: number}[]} imaginary_axis_crossings
  * @property {{re: Complex, im: Complex}} view

@@ -107,6 +107,10 @@ function asymptotes(locus, far, theme) {
       y.push(0, far * Math.sin(angle), null);
     }
   }
+  for (const level of locus?.asymptotes?.horizontal ?? []) {
+    x.push(0, far, null);
+    y.push(level, level, null);
+  }
   return { type: "scatter", mode: "lines", name: "asymptotes", x, y, line: { color: theme.axis, width: 1.25, dash: "dash" }, hoverinfo: "skip" };
 }
 
