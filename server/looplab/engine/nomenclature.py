@@ -21,6 +21,10 @@ NOMENCLATURE: dict[str, Symbol] = {
     "tau_2": Symbol(r"\tau_2", "time", "second time constant"),
     "theta": Symbol(r"\theta", "time", "dead time"),
     "zeta": Symbol(r"\zeta", "-", "damping ratio"),
+    "omega_n": Symbol(r"\omega_n", "rad/time", "natural frequency 1/tau of a second-order system"),
+    "omega_d": Symbol(r"\omega_d", "rad/time", "damped frequency, imaginary part of the poles"),
+    "period": Symbol("P", "time", "period of the oscillation"),
+    "t_63": Symbol("t_{63}", "time", "time to 63.2 % of the final value"),
     "Kc": Symbol("K_c", "input/output", "controller gain, ideal and series form"),
     "tau_I": Symbol(r"\tau_I", "time", "integral time"),
     "tau_D": Symbol(r"\tau_D", "time", "derivative time"),
@@ -65,4 +69,5 @@ NOMENCLATURE: dict[str, Symbol] = {
     "ISE": Symbol(r"\mathrm{ISE}", "output^2*time", "integral of e^2"),
     "ITAE": Symbol(r"\mathrm{ITAE}", "output*time^2", "integral of t|e|"),
     "TV": Symbol(r"\mathrm{TV}", "input", "total variation of u"),
+    "max_deviation": Symbol(r"\max|y - \hat y|", "output", "largest distance of a model from the true step response"),
 }
