@@ -7,11 +7,8 @@ from functools import cached_property
 from hashlib import blake2b
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
-from looplab.engine.frequency import bode, frequency_grid, frequency_range
-from looplab.engine.frequency.response import Bode
+from looplab.engine.frequency import frequency_range
+from looplab.engine.frequency.sampled import Sampled, sampled
 from looplab.engine.loop import ClosedLoopStep, FeedbackLoop, closed_loop_step, default_horizon
 from looplab.engine.stability import Verdict, closed_loop_verdict
 from looplab.engine.systems import TransferFunction
@@ -47,14 +44,9 @@ class LoopContext:
         return self.wanted_omega or frequency_range(self.loop.open_loop)
 
     @cached_property
-    def omega(self) -> npt.NDArray[np.float64]:
-        """Frequencies of the Bode and sensitivity plots [rad/time]."""
-        return frequency_grid(self.loop.open_loop, *self.omega_range)
-
-    @cached_property
-    def open_loop_bode(self) -> Bode:
-        """Bode data of L."""
-        return bode(self.loop.open_loop, self.omega)
+    def open_loop(self) -> Sampled:
+        """L over the frequencies of the Bode and sensitivity plots."""
+        return sampled(self.loop.open_loop, *self.omega_range)
 
     @cached_property
     def locus_system(self) -> TransferFunction:

@@ -9,26 +9,26 @@ import numpy as np
 
 from looplab.api.open_loop import nyquist_words
 from looplab.api.panels.context import LoopContext
-from looplab.engine.frequency import Bode, bode, margins, nyquist_count, nyquist_curve
+from looplab.engine.frequency import margins, nyquist_count, nyquist_curve
+from looplab.engine.frequency.sampled import Sampled, sampled
+
+DECIBELS = 20.0 / np.log(10.0)
 
 
-def _curve(data: Bode) -> dict[str, Any] | None:
+def _curve(data: Sampled) -> dict[str, Any] | None:
     """Magnitude and phase; None for a system that is zero."""
-    if not np.isfinite(data.mag_dB).any():
+    if not np.isfinite(data.log_magnitude).any():
         return None
     # On a zero of the imaginary axis the magnitude is -inf: the plot goes to its floor there.
-    return {"mag_dB": np.nan_to_num(data.mag_dB, neginf=-400.0, posinf=400.0), "phase_deg": data.phase_deg}
+    decibels = np.clip(data.log_magnitude * DECIBELS, -400.0, 400.0)
+    return {"mag_dB": decibels, "phase_deg": np.degrees(data.phase)}
 
 
 def bode_panel(context: LoopContext) -> dict[str, Any]:
     """Bode data of L, P and C over one frequency axis."""
-    loop, omega = context.loop, context.omega
-    return {
-        "omega": omega,
-        "L": _curve(context.open_loop_bode),
-        "P": _curve(bode(loop.plant, omega)),
-        "C": _curve(bode(loop.C, omega)),
-    }
+    loop, L = context.loop, context.open_loop
+    P, C = (sampled(system, *context.omega_range, loop.open_loop) for system in (loop.plant, loop.C))
+    return {"omega": L.omega, "L": _curve(L), "P": _curve(P), "C": _curve(C)}
 
 
 def nyquist(context: LoopContext) -> dict[str, Any]:
@@ -59,12 +59,12 @@ def margins_panel(context: LoopContext) -> dict[str, Any]:
 
 def sensitivity(context: LoopContext) -> dict[str, Any]:
     """Magnitudes of S, T, PS and CS."""
-    loop, omega = context.loop, context.omega
-    L = loop.open_loop.response(omega)
+    loop, L = context.loop, context.open_loop
+    P, C = (sampled(system, *context.omega_range, loop.open_loop) for system in (loop.plant, loop.C))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        S = 1.0 / (1.0 + L)
-        curves = {"S": S, "T": L * S, "PS": loop.plant.response(omega) * S, "CS": loop.C.response(omega) * S}
-        decibels = {f"{name}_dB": 20.0 * np.log10(np.abs(value)) for name, value in curves.items()}
-    whole = np.all([np.isfinite(value) for value in decibels.values()], axis=0)
-    # Exactly on a pole or zero of the imaginary axis a product is 0 * inf: such a point is left out.
-    return {"omega": omega[whole], **{name: value[whole] for name, value in decibels.items()}}
+        S = -np.log(np.abs(1.0 + np.exp(L.log_magnitude + 1j * L.phase)))
+        curves = {"S": S, "T": S + L.log_magnitude, "PS": S + P.log_magnitude, "CS": S + C.log_magnitude}
+    # Exactly on a pole or zero of the imaginary axis a product is 0 * inf, and a system that is zero has no decibels:
+    # such points are left out.
+    whole = np.all([np.isfinite(value) for value in curves.values()], axis=0)
+    return {"omega": L.omega[whole], **{f"{name}_dB": value[whole] * DECIBELS for name, value in curves.items()}}

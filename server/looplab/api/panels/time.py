@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import Any
 
 from looplab.api.panels.context import LoopContext
@@ -33,6 +32,6 @@ def metrics(context: LoopContext) -> dict[str, Any]:
     """Overshoot, rise, settling, offset, error integrals and effort, undefined ones with their reason."""
     result, stable = context.step, context.verdict.closed_loop_stable
     return {
-        "setpoint": asdict(step_metrics(result.setpoint, setpoint=1.0, stable=stable)),
-        "load": asdict(step_metrics(result.load, setpoint=0.0, stable=stable)),
+        "setpoint": vars(step_metrics(result.setpoint, setpoint=1.0, stable=stable)),
+        "load": vars(step_metrics(result.load, setpoint=0.0, stable=stable)),
     }

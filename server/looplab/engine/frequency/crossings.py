@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from math import exp
 
 import numpy as np
 import numpy.typing as npt
@@ -12,17 +13,22 @@ from looplab.engine.frequency.bracketing import refine_brackets
 from looplab.engine.frequency.response import (
     AXIS_GAP,
     MAX_DELAY_POINTS,
-    frequency_grid,
     frequency_range,
     log_magnitude,
     phase_rad,
 )
+from looplab.engine.frequency.sampled import Sampled, sampled
+from looplab.engine.frequency.scalar import newton_in_bracket, scalar_loop
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
 
 # |L| below which further phase crossovers of a dead time are not listed (gain margin above 20).
 NEGLIGIBLE = 0.05
+# Closer to the real axis than this [rad] rounding decides on which side the curve lies.
+ON_AXIS = 1e-9
+# Up to so many crossings plain numbers beat arrays.
+FEW = 40
 
 
 # Said of a loop whose dead time turns the curve more often than the grid follows.
@@ -42,6 +48,8 @@ class Crossings:
     phase_omega, phase_log_magnitude, phase_direction : ndarray
         Frequencies with L on the negative real axis [rad/time], ln \\|L\\| there, and -1 where the phase falls, +1
         where it rises. Passing over a pole on the imaginary axis counts, with infinite \\|L\\|.
+    start_phase : float or None
+        Phase where the curve first leaves the negative real axis [rad]; None where it never does.
     cut : bool
         The dead time makes further phase crossovers beyond the grid, all with \\|L\\| below 0.05.
     overrun : bool
@@ -54,13 +62,14 @@ class Crossings:
     phase_omega: FloatArray
     phase_log_magnitude: FloatArray
     phase_direction: FloatArray
+    start_phase: float | None
     cut: bool
     overrun: bool
 
 
-def _search_grid(L: TransferFunction) -> tuple[FloatArray, bool]:
-    """The grid, and whether |L| is above 1 beyond its end: the dead time turns too often to follow."""
-    overrun = False
+def _search_grid(L: TransferFunction) -> tuple[Sampled, bool]:
+    """L on the search grid, and whether |L| is above 1 beyond its end: the dead time turns too often to follow."""
+    overrun, reach = False, np.inf
     low, high = frequency_range(L)
     low, high = low * 1e-2, high * 1e2
     if L.theta > 0:
@@ -77,7 +86,9 @@ def _search_grid(L: TransferFunction) -> tuple[FloatArray, bool]:
         else:
             high = max(frequency_range(L)[1], 40.0 * np.pi / L.theta)
         high = min(high, reach)
-    return frequency_grid(L, min(low, high / 10), high), overrun
+    # Whole decades, so that a moved gain finds the same grid again.
+    ends = float(10.0 ** np.floor(np.log10(min(low, high / 10)))), float(10.0 ** np.ceil(np.log10(high)))
+    return sampled(L, ends[0], min(ends[1], reach)), overrun
 
 
 def _axis_poles(L: TransferFunction) -> FloatArray:
@@ -93,8 +104,13 @@ def _axis_zeros(L: TransferFunction) -> FloatArray:
 def _gain_crossovers(L: TransferFunction, omega: FloatArray, log_mag: FloatArray) -> FloatArray:
     sign = log_mag > 0
     at = np.flatnonzero(sign[1:] != sign[:-1])
-    x = refine_brackets(lambda x: log_magnitude(L, np.exp(x)), np.log(omega[at]), np.log(omega[at + 1]))
-    return np.exp(x)
+    a, b = np.log(omega[at]), np.log(omega[at + 1])
+    if at.size <= FEW:
+        f = scalar_loop(L).log_magnitude
+        return np.array(
+            [exp(newton_in_bracket(f, low, high)) for low, high in zip(a.tolist(), b.tolist(), strict=True)]
+        )
+    return np.exp(refine_brackets(lambda x: log_magnitude(L, np.exp(x)), a, b))
 
 
 def _phase_crossovers(L: TransferFunction, omega: FloatArray, phase: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -114,27 +130,38 @@ def _phase_crossovers(L: TransferFunction, omega: FloatArray, phase: FloatArray)
     at, target = np.array(left, dtype=int), np.array(level)
     a, b = np.log(omega[at]), np.log(omega[at + 1])
 
-    def f(x: FloatArray) -> FloatArray:
-        return phase_rad(L, np.exp(x)) - target
-
-    return np.exp(refine_brackets(f, a, b)), np.array(direction)
+    if at.size <= FEW:
+        f = scalar_loop(L).phase
+        ends = zip(a.tolist(), b.tolist(), level, strict=True)
+        return np.array([exp(newton_in_bracket(f, low, high, value)) for low, high, value in ends]), np.array(direction)
+    return np.exp(refine_brackets(lambda x: phase_rad(L, np.exp(x)) - target, a, b)), np.array(direction)
 
 
 @lru_cache(maxsize=256)
 def crossings(L: TransferFunction) -> Crossings:
     """Find every crossover of the open loop L; cached by content."""
     empty = np.zeros(0)
-    omega, overrun = _search_grid(L)
+    grid, overrun = _search_grid(L)
+    omega = grid.omega
     if L.gain == 0.0:
-        return Crossings(omega, empty, empty, empty, empty, empty, False, False)
-    log_mag, phase = log_magnitude(L, omega), phase_rad(L, omega)
+        return Crossings(omega, empty, empty, empty, empty, empty, None, False, False)
+    log_mag, phase = grid.log_magnitude, grid.phase
     gain = _gain_crossovers(L, omega, log_mag)
     where, direction = _phase_crossovers(L, omega, phase)
+    # As long as the curve lies on the real axis but for rounding it has crossed nothing.
+    off_axis = np.abs(np.mod(phase, 2.0 * np.pi) - np.pi) > ON_AXIS
+    start = int(np.argmax(off_axis)) if off_axis.any() else None
+    if start is None:
+        where, direction = empty, empty
+    elif start:
+        later = where > omega[start]
+        where, direction = where[later], direction[later]
     size = log_magnitude(L, where)
     for b in _axis_poles(L):
         size[np.abs(where - b) <= 2 * AXIS_GAP * b] = np.inf
     for b in _axis_zeros(L):
         size[np.abs(where - b) <= 2 * AXIS_GAP * b] = -np.inf
-    grid = np.unique(np.concatenate([omega, gain, where]))
+    every = np.unique(np.concatenate([omega, gain, where]))
+    start_phase = None if start is None else float(phase[start])
     cut = L.theta > 0
-    return Crossings(grid, gain, phase_rad(L, gain), where, size, direction, cut, overrun)
+    return Crossings(every, gain, phase_rad(L, gain), where, size, direction, start_phase, cut, overrun)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import lru_cache
+from math import exp, log
 
 import numpy as np
 import numpy.typing as npt
 
-from looplab.engine.frequency.bracketing import refine_brackets
 from looplab.engine.frequency.crossings import OFTEN, crossings
 from looplab.engine.frequency.nyquist import nyquist_count
+from looplab.engine.frequency.scalar import illinois, scalar_loop
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
@@ -58,33 +59,32 @@ _NAMES = ("GM", "GM_dB", "omega_180", "PM_deg", "omega_c", "delay_margin", "Ms",
 def _peak(L: TransferFunction, omega: FloatArray, kind: str) -> tuple[float, float]:
     """Largest |S| or |T| over omega, refined where the slope changes sign; (value, omega)."""
 
-    def slope(x: FloatArray) -> FloatArray:
-        w = np.exp(x)
-        s = 1j * w
-        value = L(s)
-        q = L.log_derivative(s)
-        # d ln|S| / d omega = Im(T q), d ln|T| / d omega = -Im(S q), with q = L'/L.
-        part = value / (1.0 + value) if kind == "S" else -1.0 / (1.0 + value)
-        return np.imag(part * q) * w
-
-    def size(w: FloatArray) -> FloatArray:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            value = L.response(w)
-            return np.abs((1.0 if kind == "S" else value) / (1.0 + value))
-
+    value, q = _on_grid(L, omega)
     with np.errstate(divide="ignore", invalid="ignore"):
-        x = np.log(omega)
-        rate = slope(x)
-        at = np.flatnonzero((rate[:-1] > 0) & (rate[1:] <= 0))
-        best = size(omega)
-        # Only the highest summits can win; the rest need no refinement.
-        if at.size > 8:
-            at = at[np.argsort(np.maximum(best[at], best[at + 1]))[-8:]]
-        tops = np.exp(refine_brackets(slope, x[at], x[at + 1]))
-    where = np.concatenate([omega, tops])
-    values = np.nan_to_num(np.concatenate([best, size(tops)]), nan=0.0)
-    i = int(np.argmax(values))
-    return float(values[i]), float(where[i])
+        S = 1.0 / (1.0 + value)
+        size = np.abs(S if kind == "S" else value * S)
+        # d ln|S| / d omega = Im(T q), d ln|T| / d omega = -Im(S q), with q = L'/L.
+        rate = np.imag((value if kind == "S" else -1.0) * S * q)
+    size = np.nan_to_num(size, nan=0.0, posinf=np.inf)
+    at = np.flatnonzero((rate[:-1] > 0) & (rate[1:] <= 0))
+    # Only the highest summits can win; the rest need no refinement.
+    if at.size > 8:
+        at = at[np.argsort(np.maximum(size[at], size[at + 1]))[-8:]]
+    best = int(np.argmax(size))
+    top, where = float(size[best]), float(omega[best])
+    loop = scalar_loop(L)
+    for i in at.tolist():
+        x = illinois(lambda x: loop.sensitivity_slope(x, kind), log(omega[i]), log(omega[i + 1]))
+        peak = loop.peak_size(x, kind)
+        if peak > top:
+            top, where = peak, exp(x)
+    return top, where
+
+
+def _on_grid(L: TransferFunction, omega: FloatArray) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128]]:
+    """L and L'/L at j omega."""
+    s = (1j * omega).astype(complex)
+    return L(s), L.log_derivative(s)
 
 
 def _sensitivity_peaks(L: TransferFunction, omega: FloatArray) -> dict[str, float]:

@@ -46,29 +46,24 @@ def right_half_plane(roots: npt.NDArray[np.complex128]) -> int:
     return int(np.count_nonzero(roots.real > AXIS_GAP * np.abs(roots)))
 
 
-def _start_turns(L: TransferFunction, omega_low: float) -> int:
-    """Crossings of the ray (-inf, -1) from the indentation at the origin (or omega = 0) up to the first grid point.
+def _start_turns(L: TransferFunction, phase: float) -> int:
+    """Crossings of the ray (-inf, -1) from a small positive real s to where the curve first leaves the real axis.
 
-    Weighted like the rest: 2 for a crossing that has a mirror image, 1 for one at omega = 0 itself; clockwise positive.
+    On the way lie the quarter circle around the origin and, where only even powers of s matter, a stretch along the
+    axis. Weighted like the rest: 2 for a crossing that has a mirror image, 1 for the start itself; clockwise positive.
     """
-    phase_low = float(phase_rad(L, np.array([omega_low]))[0])
     start = -np.pi if L.origin_gain < 0 else 0.0
-    big = L.origin_order > 0 or (L.origin_order == 0 and abs(L.origin_gain) > 1.0)
-    if not big:
+    if not (L.origin_order > 0 or (L.origin_order == 0 and abs(L.origin_gain) > 1.0)):
         return 0
     turns = 0
     # On a positive real s the curve starts on the real axis, at phase 0 or -pi.
-    if start == -np.pi and abs(phase_low - start) < 1e-12:
-        # It runs along the ray (only even powers of s) until a pole on the axis turns it off, clockwise: that crossing,
-        # counted twice later, is its own mirror image.
-        return -1
     if start == -np.pi:
-        turns += 1 if phase_low < start else -1
-    low, high = sorted((start, phase_low))
+        turns += 1 if phase < start else -1
+    low, high = sorted((start, phase))
     levels = np.arange(np.floor((low + np.pi) / (2 * np.pi)) + 1, np.floor((high + np.pi) / (2 * np.pi)) + 1)
     levels = levels * 2 * np.pi - np.pi
     between = int(np.count_nonzero((levels > low + 1e-12) & (levels < high - 1e-12)))
-    return turns + (2 * between if phase_low < start else -2 * between)
+    return turns + (2 * between if phase < start else -2 * between)
 
 
 @lru_cache(maxsize=256)
@@ -110,8 +105,10 @@ def nyquist_count(L: TransferFunction) -> NyquistCount:
     if L.origin_order == 0 and abs(L.origin_gain + 1.0) < 1e-9:
         touching = True
     outside = found.phase_log_magnitude > 0
-    N = int(-2 * found.phase_direction[outside].sum()) + _start_turns(L, found.omega[0])
-    if L.theta == 0 and L.relative_degree == 0 and L.gain < -1.0:
+    N = int(-2 * found.phase_direction[outside].sum())
+    if found.start_phase is not None:
+        N += _start_turns(L, found.start_phase)
+    if L.theta == 0 and L.relative_degree == 0 and L.gain < -1.0 and found.start_phase is not None:
         # The curve ends on the real axis left of -1; its mirror image takes over from there.
         last = float(phase_rad(L, found.omega[-1:])[0])
         level = (2 * np.round((last - np.pi) / (2 * np.pi)) + 1) * np.pi
@@ -147,15 +144,19 @@ def nyquist_curve(L: TransferFunction, max_turn: float = 0.06) -> NyquistCurve:
         Points where \\|L\\| > 1e6 (next to poles on the axis) are left out.
     """
     omega = crossings(L).omega
-    for _ in range(4):
-        value = L.response(omega)
-        step = np.abs(np.diff(value)) / (1.0 + np.minimum(np.abs(value[1:]), np.abs(value[:-1])))
-        # Next to a pole on the axis the steps cannot shrink: there the curve is out of the picture.
-        coarse = (step > max_turn) & (np.minimum(np.abs(value[1:]), np.abs(value[:-1])) < 50.0)
-        if not coarse.any() or omega.size > 6000:
-            break
-        middle = np.sqrt(omega[:-1][coarse] * omega[1:][coarse])
-        omega = np.unique(np.concatenate([omega, middle]))
     value = L.response(omega)
+    for _ in range(4):
+        # Exactly on a pole of the axis the curve has no point.
+        finite = np.isfinite(value)
+        omega, value = omega[finite], value[finite]
+        size = np.abs(value)
+        near = np.minimum(size[1:], size[:-1])
+        # Next to a pole on the axis the steps cannot shrink: there the curve is out of the picture.
+        coarse = np.flatnonzero((np.abs(np.diff(value)) > max_turn * (1.0 + near)) & (near < 50.0))
+        if not coarse.size or omega.size > 6000:
+            break
+        middle = np.sqrt(omega[coarse] * omega[coarse + 1])
+        omega = np.insert(omega, coarse + 1, middle)
+        value = np.insert(value, coarse + 1, L.response(middle))
     keep = np.isfinite(value) & (np.abs(value) < 1e6)
     return NyquistCurve(omega[keep], value.real[keep], value.imag[keep])

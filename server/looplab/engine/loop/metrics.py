@@ -157,8 +157,7 @@ def step_metrics(response: Response, *, setpoint: float, stable: bool) -> StepMe
             _shape(curve, final, out, why)
         else:
             _disturbed(curve, final, out, why)
-    error = HermiteCurve(response.t, setpoint - response.y, -response.dy)
-    out["IAE"], out["ISE"], out["ITAE"] = error.absolute_integrals()
+    out["IAE"], out["ISE"], out["ITAE"] = curve.absolute_integrals(setpoint)
     if final is not None and abs(setpoint - final) > 1e-9:
         for name in ("IAE", "ISE", "ITAE"):
             why[name] = "grows with the horizon: an offset remains"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -108,6 +109,12 @@ class LoopEquations:
         return x0
 
 
+@lru_cache(maxsize=64)
+def loop_equations(loop: FeedbackLoop) -> LoopEquations:
+    """The equations of a loop, cached by content."""
+    return LoopEquations(loop)
+
+
 def _check(horizon: float, points: int, theta: float) -> None:
     if not (np.isfinite(horizon) and horizon > 0):
         raise InvalidInput("the horizon must be a positive time", field="horizon")
@@ -187,7 +194,7 @@ def closed_loop_step(loop: FeedbackLoop, horizon: float, points: int = 500) -> C
             hint="move the dead time into the plant",
         )
     _check(horizon, points, theta)
-    equations = LoopEquations(loop)
+    equations = loop_equations(loop)
     with np.errstate(over="ignore", invalid="ignore"):
         if theta == 0.0:
             grid = TimeGrid(horizon / (points - 1), points)

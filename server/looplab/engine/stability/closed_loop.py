@@ -11,9 +11,10 @@ import numpy.typing as npt
 from looplab.engine.frequency.crossings import crossings
 from looplab.engine.frequency.nyquist import NyquistCount, nyquist_count
 from looplab.engine.loop.feedback_loop import FeedbackLoop
-from looplab.engine.loop.step_response import LoopEquations
+from looplab.engine.loop.step_response import loop_equations
 from looplab.engine.stability.delay_line import delay_line_matrix
 from looplab.engine.stability.polish import polish_closed_loop_poles
+from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.transfer_function import TransferFunction
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -49,12 +50,12 @@ def _sorted(poles: ComplexArray) -> ComplexArray:
 
 
 def _dead_time_poles(loop: FeedbackLoop) -> ComplexArray:
-    L = loop.open_loop
+    L, hidden = split_hidden_modes(loop.open_loop)
     theta = loop.theta
     found = crossings(L)
     fastest = float(found.gain_omega.max(initial=0.0))
     nodes = int(min(20 + np.ceil(1.5 * theta * fastest), 120))
-    candidates = np.linalg.eigvals(delay_line_matrix(LoopEquations(loop), theta, nodes)).astype(complex)
+    candidates = np.linalg.eigvals(delay_line_matrix(loop_equations(loop), theta, nodes)).astype(complex)
     # The collocation resolves about half a wave per node; what it cannot resolve is noise.
     candidates = candidates[(np.abs(candidates.imag) * theta < 0.75 * nodes) & (candidates.imag >= 0)]
     # Beyond the collocation's reach each phase crossover has a pole close by.
@@ -62,9 +63,22 @@ def _dead_time_poles(loop: FeedbackLoop) -> ComplexArray:
     poles, good = polish_closed_loop_poles(L, candidates, steps=8)
     poles = poles[good & (poles.imag >= -1e-9 * np.abs(poles))]
     poles = _distinct(poles[np.argsort(-poles.real)][:60])
+    poles = np.concatenate([poles, *_unmoved(L), hidden])
     upper = poles[poles.imag > 1e-9 * np.abs(poles)]
     real = poles[poles.imag <= 1e-9 * np.abs(poles)].real
     return np.concatenate([real, upper, upper.conj()])
+
+
+def _unmoved(L: TransferFunction) -> list[ComplexArray]:
+    """Open-loop poles that the loop moves by less than rounding: next to p, 1 + c/(s - p) = 0 gives s = p - c."""
+    out = []
+    for p in set(L.poles.tolist()):
+        others = L.poles[L.poles != p]
+        if others.size == L.order - 1:
+            c = TransferFunction(L.zeros, others, L.gain, L.theta)(p) if p.imag == 0 else np.inf
+            if abs(c) < 1e-12 * abs(p):
+                out.append(np.array([p], dtype=complex))
+    return out
 
 
 def _distinct(poles: ComplexArray) -> ComplexArray:
@@ -95,8 +109,8 @@ def closed_loop_poles(loop: FeedbackLoop) -> ClosedLoopPoles:
     .. [1] D. Breda, S. Maset, R. Vermiglio, SIAM J. Sci. Comput. 27 (2005) 482-495 (pseudospectral collocation).
     """
     if loop.theta == 0.0 or loop.open_loop.gain == 0.0:
-        poles = np.linalg.eigvals(LoopEquations(loop).closed_loop_matrix()).astype(complex)
-        polished, good = polish_closed_loop_poles(loop.open_loop, poles)
+        poles = np.linalg.eigvals(loop_equations(loop).closed_loop_matrix()).astype(complex)
+        polished, good = polish_closed_loop_poles(loop.open_loop, poles, steps=2)
         return ClosedLoopPoles(_sorted(np.where(good, polished, poles)), True)
     reason = "dead time makes infinitely many closed-loop poles; the rightmost are listed"
     poles = _sorted(_dead_time_poles(loop))

@@ -15,6 +15,8 @@ from looplab.engine.systems.polynomial import ComplexArray, FloatArray, from_roo
 MAX_ORDER = 50
 MAX_CONNECTED_ORDER = 200
 SMALLEST, LARGEST = 1e-12, 1e12
+# Products of so many factors within those bounds stay finite.
+SMALL_ORDER = 12
 
 
 def _check_range(field: str, sizes: FloatArray) -> None:
@@ -84,6 +86,17 @@ class TransferFunction:
             object.__setattr__(self, name, value)
         object.__setattr__(self, "gain", float(gain))
         object.__setattr__(self, "theta", float(theta))
+
+    @classmethod
+    def _of(cls, zeros: ComplexArray, poles: ComplexArray, gain: float, theta: float) -> TransferFunction:
+        """From root sets that are known to be conjugate-closed and in range."""
+        self = object.__new__(cls)
+        for name, value in (("zeros", zeros), ("poles", poles)):
+            value.setflags(write=False)
+            object.__setattr__(self, name, value)
+        object.__setattr__(self, "gain", float(gain))
+        object.__setattr__(self, "theta", float(theta))
+        return self
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError("a TransferFunction is immutable")
@@ -188,6 +201,8 @@ class TransferFunction:
         Zeros and poles are multiplied in alternation, so that order 50 neither overflows nor underflows.
         """
         s_array = np.asarray(s, dtype=complex)
+        if s_array.ndim == 1 and 0 < max(self.zeros.size, self.poles.size) <= SMALL_ORDER:
+            return self._broadcast(s_array)
         both = min(self.zeros.size, self.poles.size)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             value = self.gain * np.exp(-self.theta * s_array)
@@ -199,23 +214,41 @@ class TransferFunction:
                 value = value / (s_array - p)
         return complex(value) if value.ndim == 0 else value
 
+    def _broadcast(self, s: ComplexArray) -> ComplexArray:
+        """The same on arrays of roots at once, for orders that cannot overflow."""
+        both = min(self.zeros.size, self.poles.size)
+        column = s[:, None]
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            value = self.gain * np.exp(-self.theta * s) if self.theta else np.full(s.shape, self.gain, dtype=complex)
+            if both:
+                value *= ((column - self.zeros[:both]) / (column - self.poles[:both])).prod(axis=1)
+            if self.zeros.size > both:
+                value *= (column - self.zeros[both:]).prod(axis=1)
+            if self.poles.size > both:
+                value /= (column - self.poles[both:]).prod(axis=1)
+        return np.asarray(value)
+
     def response(self, omega: npt.ArrayLike) -> ComplexArray:
         """Frequency response G(j omega), shape of omega, dead time exact; omega in rad/time."""
         return np.atleast_1d(self(1j * np.asarray(omega, dtype=float)))
 
     def log_derivative(self, s: ComplexArray) -> ComplexArray:
         r"""G'(s)/G(s) = sum 1/(s - z) - sum 1/(s - p) - theta, same shape as s."""
-        out = np.full(np.shape(s), -self.theta, dtype=complex)
+        column = np.asarray(s)[..., None]
         with np.errstate(divide="ignore", invalid="ignore"):
-            for z in self.zeros:
-                out += 1.0 / (s - z)
-            for p in self.poles:
-                out -= 1.0 / (s - p)
-        return out
+            out: ComplexArray = (1.0 / (column - self.zeros)).sum(axis=-1) - (1.0 / (column - self.poles)).sum(axis=-1)
+        return out - self.theta
 
     def __mul__(self, other: TransferFunction | float) -> TransferFunction:
         """Series connection: roots joined, gains multiplied, dead times added; nothing is cancelled."""
         if isinstance(other, TransferFunction):
+            if self.order + other.order <= MAX_ORDER and np.isfinite(self.gain * other.gain):
+                return TransferFunction._of(
+                    np.concatenate([self.zeros, other.zeros]),
+                    np.concatenate([self.poles, other.poles]),
+                    self.gain * other.gain,
+                    self.theta + other.theta,
+                )
             return TransferFunction(
                 np.concatenate([self.zeros, other.zeros]),
                 np.concatenate([self.poles, other.poles]),
@@ -225,6 +258,11 @@ class TransferFunction:
         return TransferFunction(self.zeros, self.poles, self.gain * float(other), self.theta)
 
     __rmul__ = __mul__
+
+    @cached_property
+    def unit(self) -> TransferFunction:
+        """The same roots and dead time with gain +1 or -1: what a moved gain leaves as it is."""
+        return TransferFunction._of(self.zeros, self.poles, -1.0 if self.gain < 0 else 1.0, self.theta)
 
     def without_dead_time(self) -> TransferFunction:
         """The rational part."""

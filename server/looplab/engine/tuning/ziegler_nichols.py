@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import isfinite
+
 from looplab.engine.errors import InvalidInput, RuleNotApplicable
 from looplab.engine.tuning.settings import TYPES, Settings
 
@@ -47,9 +49,9 @@ def ziegler_nichols_ultimate(Ku: float, Pu: float, type: str) -> Settings:
     """
     if type not in TYPES:
         raise RuleNotApplicable(f"Ziegler-Nichols has no settings for {type}", field="types", hint="P, PI or PID")
-    if Ku == 0:
-        raise InvalidInput("Ku must not be zero", field="Ku")
-    if not Pu > 0:
+    if Ku == 0 or not isfinite(Ku):
+        raise InvalidInput("Ku must be a finite number other than zero", field="Ku")
+    if not (Pu > 0 and isfinite(Pu)):
         raise InvalidInput("Pu must be positive", field="Pu")
     k, i, d = TABLE[type]
     return Settings(RULE, NAME, type, k * Ku, i * Pu if i else None, d * Pu if d else None, FORMULAS[type], SOURCE)

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from looplab.engine.frequency.crossings import crossings
+from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.polynomial import from_roots, roots
 from looplab.engine.systems.transfer_function import TransferFunction
 
@@ -165,6 +166,7 @@ def breakaway_points(L: TransferFunction) -> tuple[Breakaway, ...]:
     ----------
     .. [1] K. Ogata, Modern Control Engineering, 5th ed., Prentice Hall 2010, sec. 6-2.
     """
+    L, _ = split_hidden_modes(L)
     if not L.order:
         return ()
     # In units of a typical root: expanded in other units the coefficients spread over hundreds of decades.

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from looplab.engine.stability.delay_line import chebyshev_differentiation
 from looplab.engine.stability.locus.count import count_in_rectangle
 from looplab.engine.stability.polish import polish_closed_loop_poles
+from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.realization import realize
 from looplab.engine.systems.transfer_function import TransferFunction
 
@@ -151,7 +152,7 @@ def dead_time_branches(
     proved : bool
         The argument principle found as many poles as were followed, at five gains.
     """
-    L, hidden = _without_hidden(L)
+    L, hidden = split_hidden_modes(L)
     nodes = int(min(12 + np.ceil(L.theta * np.hypot(inside.top, inside.left)), MAX_NODES))
     line = Collocation(L, nodes)
     if not _proved(line, gains[gains > 0], inside):
@@ -175,18 +176,6 @@ def dead_time_branches(
     branches = _join(L, gains, [start.astype(complex), *rows], gate)
     stay = np.tile(hidden[inside.contains(hidden)][:, None], (1, gains.size))
     return gains, np.concatenate([branches, stay]), proved
-
-
-def _without_hidden(L: TransferFunction) -> tuple[TransferFunction, ComplexArray]:
-    """L less its cancelling pairs of a pole and a zero, and those poles: they stay where they are for every gain."""
-    zeros, poles = L.zeros.tolist(), L.poles.tolist()
-    hidden = []
-    for z in L.zeros.tolist():
-        if z in poles:
-            zeros.remove(z)
-            poles.remove(z)
-            hidden.append(z)
-    return TransferFunction(zeros, poles, L.gain, L.theta), np.array(hidden, dtype=complex)
 
 
 def _proved(line: Collocation, gains: FloatArray, inside: Rectangle) -> bool:
