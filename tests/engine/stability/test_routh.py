@@ -1,4 +1,4 @@
-"""The Routh array: textbook arrays entry by entry, both singular cases, and counts against root sets known beforehand."""
+"""The Routh array: textbook arrays entry by entry, both singular cases, counts against root sets known before."""
 
 from decimal import Decimal
 from fractions import Fraction
