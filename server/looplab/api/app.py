@@ -7,7 +7,19 @@ from fastapi import APIRouter, FastAPI
 from looplab import __version__
 from looplab.api import errors, pages
 from looplab.api.limits import BodyLimit
-from looplab.api.routes import frequency, health, labs, laplace, loop, root_locus, routh, stability, tune
+from looplab.api.routes import (
+    frequency,
+    health,
+    labs,
+    laplace,
+    loop,
+    response,
+    root_locus,
+    routh,
+    stability,
+    state_space,
+    tune,
+)
 from looplab.api.security import SecurityHeaders
 from looplab.api.settings import Settings
 
@@ -40,7 +52,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         redoc_url=None,
     )
     v1 = APIRouter(prefix="/api/v1")
-    for module in (health, loop, frequency, root_locus, tune, laplace, labs, routh, stability):
+    for module in (health, loop, frequency, root_locus, tune, laplace, labs, routh, stability, response, state_space):
         v1.include_router(module.router)
     app.include_router(v1)
     errors.install(app)

@@ -2,7 +2,9 @@
 
 from looplab.schemas.base import Model, located
 from looplab.schemas.controllers import Controller, ParallelPID, StandardPID
+from looplab.schemas.inputs import InputShape
 from looplab.schemas.loops import Loop
+from looplab.schemas.state_space import Matrices, StateSpaceSystem, state_space_latex
 from looplab.schemas.systems import (
     ExpressionSystem,
     FOPDTSystem,
@@ -16,13 +18,17 @@ __all__ = [
     "Controller",
     "ExpressionSystem",
     "FOPDTSystem",
+    "InputShape",
     "Loop",
+    "Matrices",
     "Model",
     "ParallelPID",
     "PolynomialSystem",
     "SOPDTSystem",
     "StandardPID",
+    "StateSpaceSystem",
     "System",
     "ZPKSystem",
     "located",
+    "state_space_latex",
 ]

@@ -8,6 +8,7 @@ from pydantic import Discriminator, Field, Tag
 
 from looplab.engine.loop import PID
 from looplab.schemas.base import Model
+from looplab.schemas.state_space import StateSpaceSystem
 from looplab.schemas.systems import ExpressionSystem, FOPDTSystem, PolynomialSystem, SOPDTSystem, ZPKSystem
 
 Filter = Annotated[float, Field(ge=0, description="Derivative filter time over derivative time [-].")]
@@ -76,10 +77,11 @@ Controller = Annotated[
     | Annotated[ZPKSystem, Tag("zpk")]
     | Annotated[FOPDTSystem, Tag("fopdt")]
     | Annotated[SOPDTSystem, Tag("sopdt")]
-    | Annotated[ExpressionSystem, Tag("expr")],
+    | Annotated[ExpressionSystem, Tag("expr")]
+    | Annotated[StateSpaceSystem, Tag("ss")],
     Discriminator(
         _tag,
         custom_error_type="controller_type",
-        custom_error_message="type must be one of 'pid', 'tf', 'zpk', 'fopdt', 'sopdt', 'expr'",
+        custom_error_message="type must be one of 'pid', 'tf', 'zpk', 'fopdt', 'sopdt', 'expr', 'ss'",
     ),
 ]

@@ -1,4 +1,4 @@
-"""A linear system as JSON: five ways to write it."""
+"""A linear system as JSON: six ways to write it."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pydantic import Field
 from looplab.engine.systems import FOPDT, SOPDT, TransferFunction, expression_latex, parse_transfer_function
 from looplab.engine.systems.notation import latex_number
 from looplab.schemas.base import Coefficients, DeadTime, Model, Roots, located, to_complex
+from looplab.schemas.state_space import StateSpaceSystem
 
 
 def _dead_time_latex(theta: float) -> str:
@@ -128,5 +129,6 @@ class ExpressionSystem(Model):
 
 
 System = Annotated[
-    PolynomialSystem | ZPKSystem | FOPDTSystem | SOPDTSystem | ExpressionSystem, Field(discriminator="type")
+    PolynomialSystem | ZPKSystem | FOPDTSystem | SOPDTSystem | ExpressionSystem | StateSpaceSystem,
+    Field(discriminator="type"),
 ]

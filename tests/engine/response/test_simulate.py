@@ -12,6 +12,7 @@ from looplab.engine.errors import ImproperSystem, InvalidInput
 from looplab.engine.loop import step_response
 from looplab.engine.response import (
     InputSignal,
+    final_value,
     held_samples,
     impulse,
     joined_samples,
@@ -212,6 +213,42 @@ def test_a_state_space_channel_with_dead_time() -> None:
     found = simulate(model.channel(), step(), 5, 51, [2.0], theta=1.0)
     s = found.t - 1
     close(found.y, 2 * np.exp(-found.t) + np.where(s > 0, 1 - np.exp(-s), 0.0))
+
+
+@pytest.mark.parametrize(
+    ("text", "signal", "value", "word"),
+    [
+        ("2/(3s+1) exp(-s)", step(1.5), 3.0, None),
+        ("2/(3s+1)", held_samples([0, 1], [1, -1]), -2.0, None),
+        ("2/(3s+1)", pulse(), 0.0, None),
+        ("2/(3s+1)", impulse(), 0.0, None),
+        ("s/(3s+1)", ramp(), None, "does not settle"),
+        ("2/(3s+1)", sine(), None, "does not settle"),
+        ("2/(3s+1)", sine(0), 0.0, None),
+        ("1/s", step(), None, "pole at 0"),
+        ("1/(s^2+4)", step(), None, "pole at 0 ± 2j"),
+        ("1/(s-1)", step(), None, "pole at 1"),
+    ],
+)
+def test_final_values(text: str, signal: InputSignal, value: float | None, word: str | None) -> None:
+    G = parse_transfer_function(text)
+    found = final_value(G.poles, G.dc_gain, signal)
+    assert found.value == (None if value is None else pytest.approx(value))
+    assert (word or "") in str(found.reason)
+    if value is not None:
+        assert simulate(G, signal, 200, 50).y[-1] == pytest.approx(value, abs=1e-12)
+
+
+def test_many_breakpoints_between_samples() -> None:
+    """Forty pieces a sample apart and off the grid: the ladder of halved exponentials."""
+    times = np.sort(np.random.default_rng(5).uniform(0, 6, 60))
+    values = np.cos(times)
+    found = simulate(parse_transfer_function("3/((s+1)(s+3))"), held_samples(times, values), 8.0, 33)
+    expected = np.zeros(33)
+    for at, jump in zip(times, np.diff(values, prepend=0.0), strict=True):
+        s = np.maximum(found.t - at, 0.0)
+        expected += jump * (1 - 1.5 * np.exp(-s) + 0.5 * np.exp(-3 * s))
+    close(found.y, expected, 1e-13)
 
 
 def test_horizons() -> None:

@@ -47,6 +47,8 @@ def test_what_is_no_staircase_is_refused() -> None:
             superposition(G, signal, 5)
     with pytest.raises(InvalidInput, match="more than can be shown"):
         superposition(G, held_samples(np.arange(60.0), np.arange(60.0) + 1), 5)
+    with pytest.raises(InvalidInput, match="numbers"):
+        superposition(G, held_samples(np.arange(40.0), np.arange(40.0) + 1), 5, 2000)
 
 
 def test_the_convolution_sum_comes_closer_with_the_square_of_the_slices() -> None:

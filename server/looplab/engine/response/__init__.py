@@ -1,5 +1,6 @@
 """Responses of one system to any input of the notes, from any initial state, and what they are made of."""
 
+from looplab.engine.response.final_value import FinalValue, final_value
 from looplab.engine.response.horizon import response_horizon
 from looplab.engine.response.inputs import (
     InputSignal,
@@ -16,11 +17,13 @@ from looplab.engine.response.superposition import Convolution, Superposition, Te
 
 __all__ = [
     "Convolution",
+    "FinalValue",
     "InputSignal",
     "Superposition",
     "SystemResponse",
     "Term",
     "convolution",
+    "final_value",
     "held_samples",
     "impulse",
     "joined_samples",

@@ -50,7 +50,7 @@ class SystemResponse:
 class _Stepper:
     """z = (states, a, b) carried over any time: the input's piece is two more states, in units of one sample."""
 
-    def __init__(self, system: StateSpace, omega: float, h: float) -> None:
+    def __init__(self, system: StateSpace, omega: float, h: float, breakpoints: int) -> None:
         n = system.B.size
         A, B, C = system.A, system.B, system.C
         self.scale = np.ones(n)
@@ -60,16 +60,17 @@ class _Stepper:
         # The input is scaled so that its column in the exponential is no larger than those of the states.
         self.unit = max(float(np.abs(B).max(initial=0.0)) / max(float(np.abs(A).max(initial=0.0)), 1.0 / h), 1e-300)
         self.n, self.h, self.omega = n, h, omega
+        self.few = breakpoints < LADDER // 2
         self.M = np.zeros((n + 2, n + 2))
         self.M[:n, :n] = A * h
         self.M[:n, n] = B * (h / self.unit)
         self.M[n, n + 1] = omega * h if omega else 1.0
         self.M[n + 1, n] = -omega * h
         self.B = B
-        self.rows = np.zeros((1 + n, n + 2))
+        # y, then z itself: the states, and what the next piece starts from.
+        self.rows = np.vstack([np.zeros(n + 2), np.eye(n + 2)])
         self.rows[0, :n] = C
         self.rows[0, n] = system.D / self.unit
-        self.rows[1:, :n] = np.diag(self.scale)
 
     def begin(self, x: FloatArray) -> FloatArray:
         """z for a state and no input yet."""
@@ -90,7 +91,7 @@ class _Stepper:
 
     @cached_property
     def ladder(self) -> list[FloatArray]:
-        """exp(M/2), exp(M/4), ...: any part of a sample is a sum of these, so that no breakpoint needs its own."""
+        """exp(M/2), exp(M/4), ...: any part of a sample is a sum of these, no breakpoint needs its own."""
         return [expm(self.M * 0.5**k) for k in range(1, LADDER + 1)]
 
     def advance(self, z: FloatArray, part: float) -> FloatArray:
@@ -99,6 +100,8 @@ class _Stepper:
             return z
         if part >= 1.0:
             return self.step @ z
+        if self.few:
+            return expm(self.M * part) @ z
         for rung in self.ladder:
             part *= 2.0
             if part >= 1.0:
@@ -109,9 +112,10 @@ class _Stepper:
         return z
 
     def samples(self, z: FloatArray, count: int) -> FloatArray:
-        """y and x at z and at the ``count - 1`` samples after it, shape (count, 1 + n), then z of the last."""
-        both = np.vstack([self.rows, np.eye(self.n + 2)])
-        return delay_free_response(self.M, both, z[:, None], 1.0, count, self.step)[:, :, 0]
+        """y and z at z and at the ``count - 1`` samples after it, shape (count, 1 + n + 2)."""
+        if count == 1:
+            return (self.rows @ z)[None, :]
+        return delay_free_response(self.M, self.rows, z[:, None], 1.0, count, self.step)[:, :, 0]
 
 
 def _check(horizon: float, points: int) -> None:
@@ -173,7 +177,8 @@ def simulate(
         raise InvalidInput(f"the initial state must be {n} finite numbers", field="x0")
     t = np.linspace(0.0, horizon, points)
     with np.errstate(over="ignore", invalid="ignore"):
-        out = _march(_Stepper(system, signal.omega, horizon / (points - 1)), signal.shifted(delay), state, points)
+        stepper = _Stepper(system, signal.omega, horizon / (points - 1), signal.times.size)
+        out = _march(stepper, signal.shifted(delay), state, points)
         bad = ~(np.abs(out[:, 0]) < LARGEST_VALUE)
     stop = int(np.argmax(bad)) if bad.any() else points
     late = zip(signal.times + delay, system.D * signal.areas, strict=True)
@@ -182,7 +187,7 @@ def simulate(
     return SystemResponse(
         t,
         signal.value(t),
-        out[:stop, 0],
+        out[:stop, 0].copy(),
         out[:stop, 1:],
         impulses,
         float(t[stop]) if cut else None,
@@ -207,11 +212,12 @@ def _march(stepper: _Stepper, signal: InputSignal, x0: FloatArray, points: int) 
             z = stepper.advance(z, done - at)
             run = stepper.samples(z, until - done)
             out[done:until] = run[:, : 1 + n]
-            z, at = run[-1, 1 + n :], float(until - 1)
+            z, at = run[-1, 1:], float(until - 1)
             done = until
         if done == points or not np.isfinite(z).all():
             break
         z = stepper.advance(z, edge - at)
         z = stepper.enter(z, signal.starts[i], float(signal.areas[i]))
         at = edge
+    out[:, 1:] *= stepper.scale
     return out

@@ -15,6 +15,7 @@ from looplab.engine.systems.realization import StateSpace
 from looplab.engine.systems.transfer_function import TransferFunction
 
 MAX_TERMS = 50
+MAX_NUMBERS = 60_000
 
 
 @dataclass(frozen=True)
@@ -95,6 +96,12 @@ def superposition(
     if used.size > MAX_TERMS:
         raise InvalidInput(
             f"{used.size} steps are more than can be shown one by one ({MAX_TERMS})", field="input", hint="hold longer"
+        )
+    if used.size * points > MAX_NUMBERS:
+        raise InvalidInput(
+            f"{used.size} steps of {points} points each are more than {MAX_NUMBERS} numbers",
+            field="points",
+            hint="ask for fewer points",
         )
     whole = simulate(system, signal, horizon, points, x0, theta)
     free = simulate(system, signal.scaled(0.0), horizon, points, x0, theta)

@@ -23,6 +23,9 @@ def _matrix(value: npt.ArrayLike, name: str) -> FloatArray:
         array = np.array(value, dtype=float)
     except (TypeError, ValueError):
         array = np.zeros(())
+    # No row at all: nothing says how long a row would have been.
+    if array.shape == (0,):
+        array = np.zeros((0, 0))
     if array.ndim != 2:
         raise InvalidInput(
             f"{name} must be a matrix: a list of rows of equal length",
@@ -74,7 +77,7 @@ class StateSpaceModel:
 
     def __init__(self, A: npt.ArrayLike, B: npt.ArrayLike, C: npt.ArrayLike, D: npt.ArrayLike | None = None) -> None:
         b, c = _matrix(B, "B"), _matrix(C, "C")
-        a = _matrix(A if len(np.shape(b)) and b.shape[0] else np.zeros((0, 0)), "A")
+        a = _matrix(A, "A")
         n = a.shape[0]
         m, p = b.shape[1], c.shape[0]
         _shaped(a, (n, n), "A", "A maps states to their derivatives, so it is square")
@@ -100,6 +103,12 @@ class StateSpaceModel:
             More zeros than poles.
         """
         return cls.from_channel(realize(system))
+
+    @classmethod
+    def static(cls, D: npt.ArrayLike) -> StateSpaceModel:
+        """A gain without states, D of shape (p, m)."""
+        d = _matrix(D, "D")
+        return cls(np.zeros((0, 0)), np.zeros((0, d.shape[1])), np.zeros((d.shape[0], 0)), d)
 
     @classmethod
     def from_channel(cls, channel: StateSpace) -> StateSpaceModel:

@@ -21,8 +21,9 @@ def trim(coefficients: FloatArray) -> FloatArray:
 
 def _quadratic_roots(a: float, b: float, c: float) -> ComplexArray:
     # Divide first: squares of very large or very small coefficients overflow.
-    b, c = b / a, c / a
-    disc = b * b - 4.0 * c
+    with np.errstate(over="ignore", invalid="ignore"):
+        b, c = b / a, c / a
+        disc = b * b - 4.0 * c
     if disc < 0.0:
         im = 0.5 * np.sqrt(-disc)
         return np.array([complex(-0.5 * b, im), complex(-0.5 * b, -im)])
@@ -52,7 +53,8 @@ def roots(coefficients: FloatArray) -> ComplexArray:
     if p.size == 1:
         found = np.zeros(0, dtype=complex)
     elif p.size == 2:
-        found = np.array([-p[1] / p[0]], dtype=complex)
+        with np.errstate(over="ignore"):
+            found = np.array([-p[1] / p[0]], dtype=complex)
     elif p.size == 3:
         found = _quadratic_roots(*p)
     else:

@@ -1,0 +1,166 @@
+"""The response of one system to an input, from any initial state."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from fastapi import APIRouter, Body
+from pydantic import Field, model_validator
+from starlette.responses import Response
+
+from looplab.api.answers.response import ResponseAnswer
+from looplab.api.docs import ERRORS
+from looplab.api.encode import json_response
+from looplab.api.strict import StrictRoute
+from looplab.engine.errors import InvalidInput
+from looplab.engine.response import (
+    InputSignal,
+    convolution,
+    final_value,
+    response_horizon,
+    simulate,
+    superposition,
+)
+from looplab.engine.state_space import StateSpaceModel, initial_state
+from looplab.engine.systems import StateSpace
+from looplab.engine.systems.polynomial import FloatArray
+from looplab.labs.text import render_math
+from looplab.schemas import InputShape, Model, StateSpaceSystem, System, located
+
+router = APIRouter(tags=["response"], route_class=StrictRoute)
+
+InitialValues = Annotated[list[float], Field(max_length=50)]
+
+
+class Initial(Model):
+    """Where the system starts: its state, or the values of y, y', y'' ... just before t = 0."""
+
+    x: InitialValues | None = Field(default=None, description="State, in the coordinates of the system's A.")
+    y: InitialValues | None = Field(default=None, description="y, y', ...; those left out are 0.")
+
+    @model_validator(mode="after")
+    def _one(self) -> Initial:
+        if (self.x is None) == (self.y is None):
+            raise ValueError("give either x or y")
+        return self
+
+
+class ResponseRequest(Model):
+    """A system, an input, and where it starts."""
+
+    system: System = Field(description="Proper; x of a state space is its own, else that of a cascade of sections.")
+    input: InputShape
+    initial: Initial | None = Field(default=None, description="Left out: at rest.")
+    horizon: Annotated[float, Field(ge=1e-9, le=1e9, description="[time]")] | None = None
+    points: Annotated[int, Field(ge=2, le=5000)] = 500
+    want: Annotated[list[Literal["states", "superposition", "convolution"]], Field(max_length=8)] = Field(default=[])
+    slices: Annotated[int, Field(ge=1, le=500, description="Slices of the input in the convolution sum.")] = 50
+    arrays: Literal["list", "f4"] = "list"
+
+
+SECOND_ORDER = {"type": "sopdt", "K": 1, "tau": 1, "zeta": 0.3, "theta": 0.5}
+EXAMPLES: dict[str, Any] = {
+    "a staircase as a sum of steps": {
+        "value": {
+            "system": SECOND_ORDER,
+            "input": {"type": "sampled", "times": [0, 3, 6], "values": [1, 3, 2]},
+            "want": ["superposition"],
+            "points": 101,
+        }
+    },
+    "resonance": {
+        "value": {
+            "system": {"type": "expr", "text": "1/(s^2+4)"},
+            "input": {"type": "sine", "omega": 2},
+            "horizon": 30,
+            "points": 301,
+        }
+    },
+    "free response of a state space": {
+        "value": {
+            "system": {"type": "ss", "A": [[0, 1], [-2, -3]], "B": [[0], [1]], "C": [[1, 0]], "D": [[0]]},
+            "input": {"type": "step", "amplitude": 0},
+            "initial": {"x": [1, 2]},
+            "want": ["states"],
+            "points": 51,
+        }
+    },
+}
+
+
+def _channel(system: Any) -> tuple[StateSpace, float]:
+    """State equations in the coordinates the caller knows, and the dead time."""
+    if isinstance(system, StateSpaceSystem):
+        return system.to_model().require_single(), system.theta
+    G = system.to_engine()
+    return StateSpaceModel.from_transfer_function(G).channel(), G.theta
+
+
+def _start(initial: Initial | None, channel: StateSpace) -> FloatArray:
+    if initial is None:
+        return np.zeros(channel.B.size)
+    if initial.y is not None:
+        with located("initial"):
+            return initial_state(StateSpaceModel.from_channel(channel), initial.y)
+    x0 = np.array(initial.x, dtype=float)
+    if x0.size != channel.B.size:
+        raise InvalidInput(f"the system has {channel.B.size} states, not {x0.size}", field="initial.x")
+    return x0
+
+
+def _superposition(
+    channel: StateSpace, theta: float, signal: InputSignal, x0: FloatArray, at: tuple[float, int]
+) -> dict[str, Any]:
+    found = superposition(channel, signal, *at, x0, theta)
+    terms = [{"amplitude": term.amplitude, "start": term.start, "y": term.y} for term in found.terms]
+    return {"terms": terms, "free": found.free, "total": found.total, "error": found.error}
+
+
+def _convolution(
+    channel: StateSpace, theta: float, signal: InputSignal, slices: int, at: tuple[float, int]
+) -> dict[str, Any]:
+    found = convolution(channel, signal, *at, slices, theta)
+    return {name: getattr(found, name) for name in ("times", "weights", "h", "total", "exact", "error")}
+
+
+@router.post("/response", summary="Response of one system", responses={200: {"model": ResponseAnswer}, **ERRORS})
+def response(request: Annotated[ResponseRequest, Body(openapi_examples=EXAMPLES)]) -> Response:
+    """y of one system to a step, impulse, ramp, sine, pulse or samples, exact, dead time too, from any initial state.
+
+    Superposition takes a staircase apart into shifted steps; convolution adds up impulse responses.
+    """
+    with located("system"):
+        system = request.system.to_engine().require_proper()
+        channel, theta = _channel(request.system)
+        latex = request.system.to_latex()
+    with located("input"):
+        signal = request.input.to_engine()
+    x0 = _start(request.initial, channel)
+    horizon = request.horizon or response_horizon(system.poles, signal, theta)
+    at = (horizon, request.points)
+    found = simulate(channel, signal, *at, x0, theta)
+    final = final_value(system.poles, system.dc_gain, signal)
+    text = {"text": system.to_text(), "latex": latex, "mathml": render_math(latex)}
+    sums: dict[str, Any] = {"superposition": None, "convolution": None}
+    if "superposition" in request.want:
+        sums["superposition"] = _superposition(channel, theta, signal, x0, at)
+    if "convolution" in request.want:
+        sums["convolution"] = _convolution(channel, theta, signal, request.slices, at)
+    answer = {
+        "time_unit": "s",
+        "system": {**text, "order": system.order, "theta": theta},
+        "horizon": horizon,
+        "t": found.t,
+        "u": found.u,
+        "y": found.y,
+        "states": list(found.x.T.copy()) if "states" in request.want else None,
+        "initial_state": x0.tolist(),
+        "impulses": [{"t": t, "area": area} for t, area in found.impulses],
+        "final_value": final.value,
+        "truncated_at": found.truncated_at,
+        "truncated_reason": found.truncated_reason,
+        **sums,
+        "reasons": {} if final.reason is None else {"final_value": final.reason},
+    }
+    return json_response(answer, request.arrays)
