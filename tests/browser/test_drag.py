@@ -74,8 +74,13 @@ def test_dragging_a_gain(page: Page, loop: str, record_property):
     updates = sum(d["panel"] == "panel-step" for d in moving) / SECONDS
     redrawn = [d for d in moving if d["way"] == "react"]
     after = [d for d in drawings if d["at"] > drag["release"]]
-    # The first drawing of each plot after the release may still be of the value before; Plotly's is of the last.
-    final = {d["panel"]: d["at"] - drag["release"] for d in after if d["way"] == "react"}
+    # What is drawn of the answer at rest is the last value; the curve may be seen before Plotly has its turn.
+    seen: dict[str, float] = {}
+    final: dict[str, float] = {}
+    for drawing in (d for d in after if not d["moving"]):
+        seen.setdefault(drawing["panel"], drawing["at"] - drag["release"])
+        if drawing["way"] == "react":
+            final[drawing["panel"]] = drawing["at"] - drag["release"]
     found = {
         "loop": loop,
         "updates_per_second": round(updates, 1),
@@ -83,7 +88,8 @@ def test_dragging_a_gain(page: Page, loop: str, record_property):
         "requests": len(traffic.sent),
         "most_in_flight": traffic.most,
         "redrawn_by_plotly_while_moving": len(redrawn),
-        "final_lag_ms": {panel: round(lag) for panel, lag in final.items()},
+        "final_lag_ms": round(max(seen.values())),
+        "final_drawing_ms": round(max(final.values())),
     }
     for name, value in found.items():
         record_property(name, value)

@@ -7,7 +7,7 @@ from playwright.sync_api import Locator, Page, expect
 COUNT_DRAWINGS = """
 window.drawings = [];
 addEventListener("figure-drawn", (event) => window.drawings.push({
-  panel: event.target.closest(".panel").id, way: event.detail.way, ms: event.detail.ms, at: performance.now(),
+  panel: event.target.closest(".panel").id, at: performance.now(), ...event.detail,
 }));
 """
 

@@ -24,7 +24,7 @@ const CONFIG = {
   responsive: false,
 };
 
-/** @typedef {{way: "fast" | "react", ms: number}} Drawn  detail of the event "figure-drawn", which bubbles from the element */
+/** @typedef {{way: "fast" | "react", ms: number, moving: boolean}} Drawn  detail of the event "figure-drawn", which bubbles from the element */
 /** @typedef {ReturnType<typeof createFigure>} FigureHandle */
 
 /** @returns {Promise<any>} Plotly, when its script has run */
@@ -64,11 +64,12 @@ export function createFigure(element) {
   let revision = 0;
   let lastShown = 0;
   let interval = 0;
+  let moving = false;
   let closed = false;
 
   /** @param {Drawn["way"]} way @param {number} since */
   function report(way, since) {
-    element.dispatchEvent(new CustomEvent("figure-drawn", { bubbles: true, detail: { way, ms: performance.now() - since } }));
+    element.dispatchEvent(new CustomEvent("figure-drawn", { bubbles: true, detail: { way, ms: performance.now() - since, moving } }));
   }
 
   function settle() {
@@ -109,12 +110,19 @@ export function createFigure(element) {
 
   return {
     /** @param {Figure} figure @param {{moving?: boolean}} [options] */
-    show(figure, { moving = false } = {}) {
+    show(figure, options = {}) {
+      moving = options.moving ?? false;
       latest = { ...figure, traces: figure.traces.map(prepared) };
       interval = performance.now() - lastShown;
       lastShown += interval;
-      if (!moving || !drawn) settle();
-      else if (!queued && frame === 0) frame = requestAnimationFrame(paintNow);
+      if (!drawn) settle();
+      else if (moving) {
+        if (frame === 0) frame = requestAnimationFrame(paintNow);
+      } else {
+        // The value is seen at once where the axes hold; the plots take their turns at being drawn in full.
+        if (drawn === signature(latest)) paintNow();
+        settle();
+      }
     },
     /** Takes back the student's zoom. */
     resetZoom() {
