@@ -164,6 +164,9 @@ def test_a_bad_request_names_its_field(post: Any, route: str, body: dict[str, An
         {"type": "zpk", "poles": [-1e-12] * 50, "k": 1e300},
         {"type": "fopdt", "K": 1e300, "tau": 1e-12, "theta": 1e12},
         {"type": "zpk", "poles": [1e12], "k": 1},
+        {"type": "zpk", "poles": [-3.3e7], "k": 1e5, "theta": 1e11},
+        {"type": "zpk", "zeros": [-1.5], "poles": [-0.73], "k": 1.45, "theta": 1.37},
+        {"type": "zpk", "zeros": [-1e-9], "poles": [-1, -1e9], "k": 1},
     ],
 )
 def test_extreme_numbers_are_answered_or_refused(post: Any, system: dict[str, Any]) -> None:

@@ -136,6 +136,17 @@ def test_what_cannot_be_simulated_says_so() -> None:
     assert "impulse" in (check.reason or "")
 
 
+def test_cancelling_digits_are_told() -> None:
+    """Ten poles 2 % apart: residues of 1e10 leave six digits, and the answer says so."""
+    G = TransferFunction((), [-1 - 0.02 * k for k in range(10)], 1.0)
+    found = partial_fractions(G, STEP)
+    check = check_by_simulation(Rational.of(G * STEP.transform()), inverse_transform(found), 20.0)
+    assert check.difference is not None
+    assert check.difference > 1e-9
+    assert "cancel" in (check.reason or "")
+    assert found.residual > 1e-9
+
+
 def test_a_step_twice_as_high_is_twice_as_high() -> None:
     t = np.linspace(0, 10, 50)
     one, two = (time_function("exp(-s)/(s^2+s+1)", LaplaceInput("step", a)) for a in (1.0, 2.0))

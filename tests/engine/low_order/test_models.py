@@ -159,6 +159,9 @@ def test_refusals_are_told_apart() -> None:
     assert "real poles" in (found["half_rule", "FOPDT"].reason or "")
     assert "complex" in (found["taylor", "FOPDT"].reason or "")
     assert found["taylor", "SOPDT"].model is not None
+    # A response that starts beyond its 28.3 % point has no two points.
+    jump = {(f.method, f.type): f for f in approximate(parse_transfer_function("(s+1.5)/(s+0.75)")).models}
+    assert "jumps past" in (jump["two_point", "FOPDT"].reason or "")
     with pytest.raises(ImproperSystem):
         approximate(parse_transfer_function("s^2/(s+1)"))
     with pytest.raises(RuleNotApplicable, match="dead time would be negative"):

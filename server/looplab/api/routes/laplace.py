@@ -17,10 +17,10 @@ from looplab.api.strict import StrictRoute
 from looplab.engine import laplace as lap
 from looplab.engine import low_order
 from looplab.engine.errors import InvalidInput
-from looplab.engine.systems import TransferFunction
+from looplab.engine.systems import FOPDT, SOPDT, TransferFunction
 from looplab.engine.systems.polynomial import roots
 from looplab.labs.text import render_math
-from looplab.schemas import Model, System, located
+from looplab.schemas import FOPDTSystem, Model, SOPDTSystem, System, located
 from looplab.schemas.laplace import LinearODE, StepTransform, TransformInput
 
 router = APIRouter(tags=["laplace"], route_class=StrictRoute)
@@ -183,6 +183,13 @@ def laplace(request: Annotated[LaplaceRequest, Body(openapi_examples=LAPLACE_EXA
     return json_response(answer, request.arrays)
 
 
+def _model_latex(model: FOPDT | SOPDT) -> str:
+    """The model in its own parameters."""
+    if isinstance(model, FOPDT):
+        return FOPDTSystem(type="fopdt", K=model.K, tau=model.tau, theta=model.theta).to_latex()
+    return SOPDTSystem(type="sopdt", K=model.K, tau=model.tau, zeta=model.zeta, theta=model.theta).to_latex()
+
+
 def _model(found: low_order.Approximation, t: np.ndarray | None) -> dict[str, Any]:
     method = low_order.METHODS[found.method]
     out: dict[str, Any] = {
@@ -199,7 +206,7 @@ def _model(found: low_order.Approximation, t: np.ndarray | None) -> dict[str, An
     }
     if found.model is None or t is None:
         return out
-    latex = found.model.to_transfer_function().to_latex()
+    latex = _model_latex(found.model)
     lags = low_order.real_lags(found.model)
     return out | {
         **asdict(found.model),

@@ -62,5 +62,9 @@ def two_point(plant: TransferFunction) -> FOPDT:
             hint="use the ultimate cycle instead",
         )
     low, high = curve.crossings(1 - np.exp(-1 / 3)), curve.crossings(1 - np.exp(-1))
+    if not low.size or not high.size:
+        raise RuleNotApplicable(
+            "the step response jumps past its 28.3 % point: a first-order model does not describe it", field="plant"
+        )
     tau = 1.5 * float(high[0] - low[0])
     return FOPDT(K, tau, P.theta + max(0.0, float(high[0]) - tau))

@@ -56,7 +56,8 @@ def least_squares_fit(plant: TransferFunction, type: ModelType, curve: StepCurve
     scale = max(area - curve.theta, 0.05 * slow)
 
     def model(v: FloatArray) -> FOPDT | SOPDT:
-        tau, theta = float(np.exp(v[0])), float(v[1])
+        # The bound at zero is approached, never reached: what is left of the dead time then is none.
+        tau, theta = float(np.exp(v[0])), float(v[1]) if v[1] > 1e-12 * scale else 0.0
         return FOPDT(K, tau, theta) if type == "FOPDT" else SOPDT(K, tau, float(np.exp(v[2])), theta)
 
     def error(v: FloatArray) -> FloatArray:

@@ -51,8 +51,8 @@ class StepCurve:
 
     def __call__(self, t: FloatArray) -> FloatArray:
         """y(t), shape of t, within the horizon after the dead time [time]."""
-        x = (t - self.theta) / self._h
-        piece = np.clip(np.floor(x).astype(int), 0, self._y.size - 2)
+        x = np.clip((t - self.theta) / self._h, 0.0, self._y.size - 1.0)
+        piece = np.minimum(x.astype(int), self._y.size - 2)
         x = x - piece
         y0, y1, m0, m1 = self._y[piece], self._y[piece + 1], self._slope[piece], self._slope[piece + 1]
         c, d = 3.0 * (y1 - y0) - 2.0 * m0 - m1, m0 + m1 - 2.0 * (y1 - y0)
