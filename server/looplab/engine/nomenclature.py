@@ -70,4 +70,12 @@ NOMENCLATURE: dict[str, Symbol] = {
     "ITAE": Symbol(r"\mathrm{ITAE}", "output*time^2", "integral of t|e|"),
     "TV": Symbol(r"\mathrm{TV}", "input", "total variation of u"),
     "max_deviation": Symbol(r"\max|y - \hat y|", "output", "largest distance of a model from the true step response"),
+    "A": Symbol("A", "1/time", "state matrix, x' = A x + B u"),
+    "B": Symbol("B", "state/input/time", "input matrix"),
+    "C": Symbol("C", "output/state", "output matrix, y = C x + D u"),
+    "D": Symbol("D", "output/input", "direct feedthrough"),
+    "x": Symbol("x", "state", "state vector"),
+    "h": Symbol("h", "output/input/time", "impulse response"),
+    "Wc": Symbol("W_c", "state^2*time", "controllability Gramian"),
+    "Wo": Symbol("W_o", "output^2*time/state^2", "observability Gramian"),
 }

@@ -16,6 +16,7 @@ class StateVerdict(Answer):
     """Whether x' = A x comes to rest, stays bounded, or grows."""
 
     verdict: Literal["stable", "marginal", "unstable"]
+    lyapunov_stable: Annotated[bool, Field(description="The states stay bounded; Jordan blocks on the axis decide.")]
     because: str
 
 

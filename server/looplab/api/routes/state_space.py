@@ -14,6 +14,7 @@ from looplab.api.docs import ERRORS
 from looplab.api.encode import complex_pairs, json_response
 from looplab.api.strict import StrictRoute
 from looplab.engine.errors import EngineError, InvalidInput
+from looplab.engine.stability import matrix_stability
 from looplab.engine.state_space import (
     RankTest,
     StateSpaceModel,
@@ -79,31 +80,10 @@ EXAMPLES: dict[str, Any] = {
 
 
 def _stability(model: StateSpaceModel) -> dict[str, Any]:
-    poles = model.poles
-    size = [max(abs(p), 1e-300) for p in poles]
-    right = [p for p, s in zip(poles, size, strict=True) if p.real > 1e-12 * s]
-    axis = [p for p, s in zip(poles, size, strict=True) if abs(p.real) <= 1e-12 * s]
-
-    def at(p: complex) -> str:
-        real = 0.0 if abs(p.real) <= 1e-12 * abs(p) else p.real
-        return f"{real:.4g}" + (f" ± {abs(p.imag):.4g}j" if p.imag else "")
-
-    if right:
-        worst = max(right, key=lambda p: p.real)
-        return {"verdict": "unstable", "because": f"the mode at {at(worst)} grows"}
-    if axis:
-        repeated = [p for i, p in enumerate(axis) if any(abs(p - q) <= 1e-6 * abs(p) for q in axis[:i])]
-        if repeated:
-            return {
-                "verdict": "unstable",
-                "because": f"the pole at {at(repeated[0])} is repeated on the imaginary axis: the mode grows with t "
-                "unless it splits into separate ones",
-            }
-        return {"verdict": "marginal", "because": f"the mode at {at(axis[0])} neither decays nor grows"}
-    if not poles.size:
-        return {"verdict": "stable", "because": "there are no states"}
-    slowest = max(poles, key=lambda p: p.real)
-    return {"verdict": "stable", "because": f"every mode decays, the slowest at {at(slowest)}"}
+    if not model.states:
+        return {"verdict": "stable", "because": "there are no states", "lyapunov_stable": True}
+    found = matrix_stability(model.A)
+    return {"verdict": found.verdict, "because": found.because, "lyapunov_stable": found.lyapunov_stable}
 
 
 def _rank(test: RankTest) -> dict[str, Any]:
