@@ -21,12 +21,15 @@ class Comparison:
     new_plant: bool
     goal: float | None
     note: str = ""
+    polynomials: bool = False
 
 
 CACHED = "the locus does not depend on the gain: looplab keeps it, python-control has no memory"
+USUAL = "python-control by transfer functions, as its examples go, else by its fastest way (state space)"
 COMPARISONS = (
     Comparison("gain move, no locus", DELAY_FREE, False, False, 15.0),
     Comparison("gain move, with locus", DELAY_FREE, True, False, 30.0, CACHED),
+    Comparison("gain move, with locus, usual way", DELAY_FREE, True, False, None, USUAL, polynomials=True),
     Comparison("new plant, with locus", DELAY_FREE, True, True, 10.0),
     Comparison("gain move, no locus", DEAD_TIME, False, False, 15.0),
     Comparison("new plant, no locus", DEAD_TIME, False, True, 5.0),
@@ -38,7 +41,8 @@ def measure(rounds: int, tick: Callable[[str], None]) -> list[dict[str, Any]]:
     results = []
     for c in COMPARISONS:
         pick = "full_recompute" if c.new_plant else "gain_move"
-        a, b = getattr(ours, pick)(c.scenario, c.locus), getattr(peer, pick)(c.scenario, c.locus)
+        usual = {"polynomials": True} if c.polynomials else {}
+        a, b = getattr(ours, pick)(c.scenario, c.locus), getattr(peer, pick)(c.scenario, c.locus, **usual)
 
         def advance(name: str = f"{c.scenario.name}: {c.name}") -> None:
             tick(name)

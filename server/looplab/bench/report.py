@@ -11,26 +11,27 @@ from rich.table import Table
 def _table(title: str, left: tuple[str, ...], right: tuple[str, ...], caption: str) -> Table:
     table = Table(title=title, title_justify="left", caption=caption, caption_justify="left")
     for name in left:
-        table.add_column(name)
+        table.add_column(name, no_wrap=True)
     for name in right:
-        table.add_column(name, justify="right")
+        table.add_column(name, justify="right", no_wrap=True)
     return table
 
 
 def _moves(rows: list[dict[str, Any]]) -> Table:
     notes = " ".join(f"{r['what'].capitalize()}: {r['note']}." for r in rows if r["note"])
-    caption = f"Medians in ms; quartiles of the ratio of neighbouring calls. {notes}"
-    columns = ("looplab", "python-control", "times faster", "quartiles", "goal")
-    table = _table("Looplab and python-control in turn, the same work", ("",), columns, caption)
+    caption = f"Processor time: medians in ms, their ratio, quartiles of the ratio of neighbouring calls. {notes}"
+    columns = ("looplab", "control", "ratio", "quartiles", "goal")
+    table = _table("The same work by looplab and by python-control, in turn", ("",), columns, caption)
     loop = None
     for r in rows:
         if r["loop"] != loop:
             loop = r["loop"]
             table.add_section()
-            table.add_row(f"[bold]{loop}" + (f" (Padé {r['pade_order']} there)" if r["pade_order"] else ""))
+            table.add_row(f"[bold]{loop}")
         spread = f"{r['ratio_q1']:.1f}–{r['ratio_q3']:.1f}"
         medians = (f"{r[side]['median_ms']:.2f}" for side in ("ours", "peer"))
-        table.add_row(r["what"], *medians, f"{r['ratio']:.1f}", spread, f"{r['goal']:g}" if r["goal"] else "")
+        what = r["what"] + (f", Padé {r['pade_order']}" if r["pade_order"] else "")
+        table.add_row(what, *medians, f"{r['ratio']:.1f}", spread, f"{r['goal']:g}" if r["goal"] else "")
     return table
 
 
@@ -48,17 +49,18 @@ def _accuracy(rows: list[dict[str, Any]]) -> Table:
 
 def _server(rows: list[dict[str, Any]]) -> Table:
     caption = "Bare: as many bytes in and out, nothing computed. Goal: 8 times at most, worker 110 MB at most."
-    columns = ("ms", "× FastAPI", "× ASGI", "bare ms", "answer", "worker")
+    columns = ("ms", "bare ms", "ratio", "answer", "worker")
     table = _table("Processor time of the server for one gain move", ("",), columns, caption)
     for r in rows:
         if "reason" in r:
             table.add_row(r["plant"], r["reason"])
             continue
         cpu = r["cpu_ms"]
-        bare = f"{cpu['bare_fastapi']:.2f} / {cpu['bare_asgi']:.2f}"
-        ratios = (f"{r['ratio_to_bare_fastapi']:.1f}", f"{r['ratio_to_bare_asgi']:.1f}")
         size = (f"{r['answer_bytes'] / 1e3:.0f} kB", f"{r['worker_MB']:.0f} MB")
-        table.add_row(r["plant"], f"{cpu['looplab']:.2f}", *ratios, bare, *size)
+        table.add_section()
+        table.add_row(f"[bold]{r['plant']}", f"{cpu['looplab']:.2f}", "", "", *size)
+        for name, title in (("bare_fastapi", "a bare FastAPI route"), ("bare_asgi", "a bare ASGI application")):
+            table.add_row(f"against {title}", "", f"{cpu[name]:.2f}", f"{r[f'ratio_to_{name}']:.1f}")
     return table
 
 
