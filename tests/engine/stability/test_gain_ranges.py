@@ -1,5 +1,7 @@
 """Stable gain ranges: against a dense eigenvalue sweep, closed forms with dead time, and ends that are marginal."""
 
+import sys
+
 import numpy as np
 import pytest
 from hypothesis import assume, given
@@ -152,6 +154,28 @@ def test_unstable_lag_with_dead_time() -> None:
         found = gain_ranges(parse_transfer_function(f"exp(-{theta}s)/(s-1)"), True)
         assert not found.ranges
         assert found.reason == "no gain stabilises the loop"
+
+
+@effort(40)
+@given(systems(order=(1, 4), stable=False, theta=True))
+def test_adding_up_the_crossings_finds_the_same_ranges(L: TransferFunction) -> None:
+    """Many pieces are told apart by the direction of each crossing: the same ranges as counting in every piece."""
+    module = sys.modules["looplab.engine.stability.gain_ranges"]
+    found = []
+    for limit in (0, 10**9):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(module, "MANY_PIECES", limit)
+            found.append(gain_ranges.__wrapped__(L, True))
+    assert found[0] == found[1]
+
+
+def test_a_long_dead_time_is_answered() -> None:
+    """A lightly damped plant under 1000 s of dead time: thousands of crossings, two ends, and a note."""
+    found = gain_ranges(parse_transfer_function("exp(-1000s)/(s^2+0.001s+1)"), True)
+    r, = found.ranges  # fmt: skip
+    ends_are_marginal(parse_transfer_function("exp(-1000s)/(s^2+0.001s+1)"), found)
+    assert r.low.K is not None and r.low.K < 0
+    assert "may be missing" in str(found.reason)
 
 
 def test_reasons_of_the_ends() -> None:

@@ -16,6 +16,8 @@ from looplab.engine.systems.transfer_function import TransferFunction
 
 AXIS = 1e-9
 SAME = 1e-12
+# Beyond this many pieces only those that may be stable are counted one by one.
+MANY_PIECES = 16
 
 
 @dataclass(frozen=True)
@@ -131,6 +133,39 @@ def _no_ranges(L: TransferFunction) -> str | None:
     return None
 
 
+def _moved_right(L: TransferFunction, end: GainEnd) -> int | None:
+    """How many closed-loop poles go to the right half-plane as the gain rises through an end; None if unclear."""
+    if not end.omega or not end.K:
+        return None
+    moved = 0
+    for w in end.omega:
+        # K L(s) = -1 along a branch: ds/dK = -1/(K L'/L).
+        with np.errstate(all="ignore"):
+            rate = complex(-1.0 / (end.K * L.log_derivative(np.array([1j * w]))[0]))
+        if not abs(rate.real) > 1e-6 * abs(rate):
+            return None
+        moved += (1 if w == 0 else 2) * (1 if rate.real > 0 else -1)
+    return moved
+
+
+def _surely_unstable(L: TransferFunction, pieces: list[tuple[GainEnd, GainEnd]]) -> set[int]:
+    """Pieces that have closed-loop poles in the right half-plane, by walking away from K = 0 and adding up."""
+    first = next(i for i, (_, high) in enumerate(pieces) if high.K is None or high.K > 0)
+    out: set[int] = set()
+    for step, start in ((1, first), (-1, first - 1)):
+        Z: int | None = None
+        i = start
+        while 0 <= i < len(pieces):
+            if Z is None:
+                Z = nyquist_count(L * _inside(pieces[i][0].K, pieces[i][1].K, L)).Z
+            if Z is not None and Z > 0:
+                out.add(i)
+            moved = _moved_right(L, pieces[i][1 if step > 0 else 0])
+            Z = None if Z is None or moved is None else Z + step * moved
+            i += step
+    return out
+
+
 @lru_cache(maxsize=256)
 def gain_ranges(L: TransferFunction, negative: bool = False) -> GainRanges:
     r"""All gains K for which the loop with K L(s) is stable, dead time exact.
@@ -189,8 +224,10 @@ def gain_ranges(L: TransferFunction, negative: bool = False) -> GainRanges:
         start = zero[0] if zero else positive_only
     cuts = [start, *ends, unbounded]
     found: list[GainRange] = []
-    for low, high in pairwise(cuts):
-        if _stable(L, _inside(low.K, high.K, L)):
+    pieces = list(pairwise(cuts))
+    hopeless = _surely_unstable(L, pieces) if len(pieces) > MANY_PIECES else set()
+    for i, (low, high) in enumerate(pieces):
+        if i not in hopeless and _stable(L, _inside(low.K, high.K, L)):
             found.append(GainRange(low, high))
     reason = note if found else "no gain stabilises the loop" + (f"; {note}" if note else "")
     return GainRanges(tuple(found), reason)
