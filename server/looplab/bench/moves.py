@@ -25,11 +25,11 @@ class Comparison:
 
 
 CACHED = "the locus does not depend on the gain: looplab keeps it, python-control has no memory"
-USUAL = "python-control by transfer functions, as its examples go, else by its fastest way (state space)"
+USUAL = "python-control by transfer functions, as its examples go; else its fastest way, state space"
 COMPARISONS = (
     Comparison("gain move, no locus", DELAY_FREE, False, False, 15.0),
     Comparison("gain move, with locus", DELAY_FREE, True, False, 30.0, CACHED),
-    Comparison("gain move, with locus, usual way", DELAY_FREE, True, False, None, USUAL, polynomials=True),
+    Comparison("the same, usual way", DELAY_FREE, True, False, None, USUAL, polynomials=True),
     Comparison("new plant, with locus", DELAY_FREE, True, True, 10.0),
     Comparison("gain move, no locus", DEAD_TIME, False, False, 15.0),
     Comparison("new plant, no locus", DEAD_TIME, False, True, 5.0),
