@@ -8,7 +8,7 @@ from typing import Any
 
 from looplab.bench import ours, peer
 from looplab.bench.scenarios import DEAD_TIME, DELAY_FREE, PADE_ORDER, Scenario
-from looplab.bench.timing import interleave
+from looplab.bench.timing import WARM_UP, interleave
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def measure(rounds: int, tick: Callable[[str], None]) -> list[dict[str, Any]]:
         def advance(name: str = f"{c.scenario.name}: {c.name}") -> None:
             tick(name)
 
-        timed = interleave(a, b, c.scenario.gains(rounds + 1), advance)
+        timed = interleave(a, b, c.scenario.gains(rounds + WARM_UP), advance)
         results.append(
             {
                 "loop": c.scenario.name,

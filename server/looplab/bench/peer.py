@@ -1,9 +1,9 @@
 """The same gain move by python-control, by the fastest of its own ways, and the way its examples go.
 
-Fastest, measured and chosen: state space instead of polynomials for the closed loop (2 inputs r, d and 2 outputs y, u in one
-step_response, 2.5 times faster than four polynomial ones), values of the transfer functions by calling them (three
-times faster than frequency_response), one stability_margins for all margins. Dead time is a Pade fraction: the package
-has no other. ``control`` is imported here, inside the functions.
+Fastest, measured and chosen: state space instead of polynomials for the closed loop (2 inputs r, d and 2 outputs y, u
+in one step_response, 2.5 times faster than four polynomial ones), values of the transfer functions by calling them
+(three times faster than frequency_response), one stability_margins for all margins. Dead time is a Pade fraction: the
+package has no other. ``control`` is imported here, inside the functions.
 """
 
 from __future__ import annotations

@@ -9,6 +9,9 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 
+WARM_UP = 3
+
+
 def _spread(seconds: list[float]) -> dict[str, float]:
     """Median and quartiles [ms]."""
     low, middle, high = statistics.quantiles(seconds, n=4, method="inclusive")
@@ -18,7 +21,7 @@ def _spread(seconds: list[float]) -> dict[str, float]:
 def interleave(
     ours: Callable[[float], Any], peer: Callable[[float], Any], values: Sequence[float], tick: Callable[[], None]
 ) -> dict[str, Any]:
-    """Time ours, peer, ours, peer ... over the values, each after one untimed call.
+    """Time ours, peer, ours, peer ... over the values, each after three untimed calls.
 
     Processor time of this process is what is compared: both run on one thread, and other work on the machine does not
     enter it. Wall time is kept beside it.
@@ -29,8 +32,9 @@ def interleave(
         Medians and quartiles of processor time [ms], their ratio peer/ours, the quartiles of the ratio of neighbours,
         medians of wall time [ms].
     """
-    first, *rest = values
-    ours(first), peer(first)
+    for value in values[:WARM_UP]:
+        ours(value), peer(value)
+    rest = values[WARM_UP:]
     spent: dict[str, list[float]] = {"ours": [], "peer": []}
     wall: dict[str, list[float]] = {"ours": [], "peer": []}
     gc.collect()
