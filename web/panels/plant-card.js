@@ -72,19 +72,18 @@ export function mount(host, store, _api, { open = true } = {}) {
   let run = "";
 
   const groups = [...new Set(PRESETS.map(({ group }) => group))];
+  /** @param {import("../core/presets.js").Preset} preset */
+  const entry = ({ name, teaches, plant, controller }) => ({
+    label: name,
+    detail: teaches,
+    run() {
+      store.set({ plant, controller: Object.assign({}, store.get().controller, { form: "ideal", action: "reverse" }, controller), horizon: null });
+      toast().say(`${name}: plant and a first controller are set.`, { action: { label: "Undo", run: () => store.undo() } });
+    },
+  });
   attachMenu(
     presets,
-    groups.flatMap((group) => [
-      { heading: group },
-      ...PRESETS.filter((preset) => preset.group === group).map(({ name, teaches, plant, controller }) => ({
-        label: name,
-        detail: teaches,
-        run() {
-          store.set({ plant, controller: { ...store.get().controller, form: "ideal", action: "reverse", ...controller }, horizon: null });
-          toast().say(`${name}: plant and a first controller are set.`, { action: { label: "Undo", run: () => store.undo() } });
-        },
-      })),
-    ]),
+    groups.flatMap((group) => [{ heading: group }].concat(/** @type {any} */ (PRESETS.filter((preset) => preset.group === group).map(entry)))),
   );
 
   kind.addEventListener("value-change", () => {
