@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from looplab.bench import accuracy, ours, peer
+from looplab.bench import accuracy, moves, ours, peer
 from looplab.bench.scenarios import DELAY_FREE
 from looplab.cli import app
 from references import reference
@@ -64,6 +64,12 @@ def test_both_do_the_same_work_without_dead_time(polynomials: bool) -> None:
         np.sort_complex(np.round(a["poles"].poles, 6)), np.sort_complex(np.round(b["poles"], 6)), atol=2e-6
     )
     assert a["root_locus"].branches.shape[0] == b["root_locus"].loci.shape[1]
+
+
+def test_no_gain_is_timed_twice() -> None:
+    """A gain seen before would be answered from memory."""
+    gains = [k for series in range(len(moves.COMPARISONS)) for k in DELAY_FREE.gains(43, series)]
+    assert len(set(gains)) == len(gains)
 
 
 def test_its_reference_is_the_exact_one() -> None:

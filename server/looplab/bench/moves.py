@@ -39,7 +39,7 @@ COMPARISONS = (
 def measure(rounds: int, tick: Callable[[str], None]) -> list[dict[str, Any]]:
     """Time every comparison."""
     results = []
-    for c in COMPARISONS:
+    for series, c in enumerate(COMPARISONS):
         pick = "full_recompute" if c.new_plant else "gain_move"
         usual = {"polynomials": True} if c.polynomials else {}
         a, b = getattr(ours, pick)(c.scenario, c.locus), getattr(peer, pick)(c.scenario, c.locus, **usual)
@@ -47,7 +47,7 @@ def measure(rounds: int, tick: Callable[[str], None]) -> list[dict[str, Any]]:
         def advance(name: str = f"{c.scenario.name}: {c.name}") -> None:
             tick(name)
 
-        timed = interleave(a, b, c.scenario.gains(rounds + WARM_UP), advance)
+        timed = interleave(a, b, c.scenario.gains(rounds + WARM_UP, series), advance)
         results.append(
             {
                 "loop": c.scenario.name,

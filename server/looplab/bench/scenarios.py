@@ -27,9 +27,9 @@ class Scenario:
     alpha: float
     horizon: float
 
-    def gains(self, count: int) -> list[float]:
-        """``count`` different gains between half and the whole of Kc."""
-        return [float(k) for k in np.linspace(0.5 * self.Kc, self.Kc, count)]
+    def gains(self, count: int, series: int = 0) -> list[float]:
+        """``count`` different gains between half and the whole of Kc; no two series share one."""
+        return [float(k) * (1.0 - 1e-5 * series) for k in np.linspace(0.5 * self.Kc, self.Kc, count)]
 
     def omega(self) -> np.ndarray:
         """The frequencies of the Bode plots, the same for both [rad/time]."""
