@@ -19,7 +19,7 @@ def _table(title: str, left: tuple[str, ...], right: tuple[str, ...], caption: s
 
 def _moves(rows: list[dict[str, Any]]) -> Table:
     notes = " ".join(f"{r['what'].capitalize()}: {r['note']}." for r in rows if r["note"])
-    caption = f"Processor time of one thread: medians in ms, their ratio, quartiles of the ratio of neighbouring calls. {notes}"
+    caption = f"Processor time: medians in ms, their ratio, quartiles of the ratio of neighbouring calls. {notes}"
     columns = ("looplab", "control", "ratio", "quartiles", "goal")
     table = _table("The same work by looplab and by python-control, in turn", ("",), columns, caption)
     loop = None
