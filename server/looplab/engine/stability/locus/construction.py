@@ -77,6 +77,10 @@ def asymptotes(L: TransferFunction, top: float) -> Asymptotes:
     top : float
         Largest height of interest [rad/time].
 
+    Returns
+    -------
+    Asymptotes
+
     References
     ----------
     .. [1] K. Ogata, Modern Control Engineering, 5th ed., Prentice Hall 2010, sec. 6-2.
@@ -104,6 +108,20 @@ def departure_angles(L: TransferFunction) -> tuple[Angle, ...]:
     .. math:: m\,\phi = 180^\circ + \arg L_{-p}(p) + 360^\circ k
 
     with m the multiplicity of p and L_{-p} the open loop without the factors of p.
+
+    Parameters
+    ----------
+    L : TransferFunction
+        Dead time adds -theta Im p.
+
+    Returns
+    -------
+    tuple of Angle
+        Poles that cancel against a zero are left out: their branch is a point.
+
+    References
+    ----------
+    .. [1] K. Ogata, Modern Control Engineering, 5th ed., Prentice Hall 2010, sec. 6-2.
     """
     return _angles(L, L.poles, 1.0)
 
