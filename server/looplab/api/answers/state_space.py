@@ -23,7 +23,7 @@ class StateVerdict(Answer):
 class RankAnswer(Answer):
     """Kalman's matrix, the singular values of its scaled form, and the rank they give."""
 
-    matrix: Matrix
+    matrix: Annotated[Matrix | None, Field(description="null where its numbers leave double precision.")]
     singular_values: list[float]
     rank: int
     full: Annotated[bool, Field(description="No mode hides; decided mode by mode.")]

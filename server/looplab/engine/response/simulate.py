@@ -14,7 +14,7 @@ from looplab.engine.loop.delay_free import delay_free_response
 from looplab.engine.response.inputs import InputSignal
 from looplab.engine.systems.polynomial import FloatArray
 from looplab.engine.systems.realization import StateSpace, realize
-from looplab.engine.systems.transfer_function import TransferFunction
+from looplab.engine.systems.transfer_function import LARGEST, TransferFunction
 
 MIN_POINTS, MAX_POINTS = 2, 5000
 LARGEST_VALUE = 1e9
@@ -173,8 +173,8 @@ def simulate(
     if not np.isfinite(delay) or delay < 0:
         raise InvalidInput("the dead time must be zero or positive", field="theta")
     state = np.zeros(n) if x0 is None else np.atleast_1d(np.asarray(x0, dtype=float))
-    if state.shape != (n,) or not np.isfinite(state).all():
-        raise InvalidInput(f"the initial state must be {n} finite numbers", field="x0")
+    if state.shape != (n,) or not np.abs(state).max(initial=0.0) <= LARGEST:
+        raise InvalidInput(f"the initial state must be {n} finite numbers up to {LARGEST:g}", field="x0")
     t = np.linspace(0.0, horizon, points)
     with np.errstate(over="ignore", invalid="ignore"):
         stepper = _Stepper(system, signal.omega, horizon / (points - 1), signal.times.size)

@@ -114,8 +114,9 @@ def observability_matrix(model: StateSpaceModel) -> FloatArray:
 
 def _krylov(A: FloatArray, B: FloatArray) -> FloatArray:
     blocks = [B]
-    for _ in range(A.shape[0] - 1):
-        blocks.append(A @ blocks[-1])
+    with np.errstate(over="ignore", invalid="ignore"):
+        for _ in range(A.shape[0] - 1):
+            blocks.append(A @ blocks[-1])
     return np.hstack(blocks) if A.size else B.copy()
 
 

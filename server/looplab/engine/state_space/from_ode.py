@@ -10,6 +10,7 @@ import numpy.typing as npt
 from looplab.engine.errors import ImproperSystem, InvalidInput
 from looplab.engine.state_space.model import MAX_STATES, StateSpaceModel
 from looplab.engine.systems.polynomial import FloatArray, trim
+from looplab.engine.systems.transfer_function import LARGEST
 
 Form = Literal["phase", "controllable", "observable"]
 
@@ -72,8 +73,12 @@ def from_ode(a: npt.ArrayLike, b: npt.ArrayLike, form: Form = "phase") -> StateS
             field="b",
             hint="add the lag that the device has",
         )
-    top = np.concatenate([np.zeros(n + 1 - top.size), top]) / bottom[0]
-    bottom = bottom / bottom[0]
+    with np.errstate(over="ignore", invalid="ignore"):
+        top = np.concatenate([np.zeros(n + 1 - top.size), top]) / bottom[0]
+        bottom = bottom / bottom[0]
+    for c, name in ((bottom, "a"), (top, "b")):
+        if not np.abs(c).max() <= LARGEST:
+            raise InvalidInput("the coefficients are too far apart", field=name, hint="choose another time unit")
     A = np.eye(n, k=1)
     if n:
         A[-1] = -bottom[:0:-1]
@@ -107,6 +112,8 @@ def initial_state(model: StateSpaceModel, y: npt.ArrayLike) -> FloatArray:
     """
     values = np.atleast_1d(np.asarray(y, dtype=float))
     n = model.states
+    if not np.abs(values).max(initial=0.0) <= LARGEST:
+        raise InvalidInput(f"initial values must be finite numbers up to {LARGEST:g}", field="y")
     if values.size > n:
         raise InvalidInput(
             f"{values.size} initial values for a system of order {n}",

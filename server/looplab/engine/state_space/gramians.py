@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import solve_continuous_lyapunov
 
+from looplab.engine.state_space.eigenvalues import EPS
 from looplab.engine.state_space.model import StateSpaceModel
 from looplab.engine.systems.polynomial import FloatArray
 
@@ -48,6 +49,8 @@ def gramians(model: StateSpaceModel) -> Gramians:
         return Gramians(
             None, None, None, f"the pole at {at} does not decay, so the integral that defines a Gramian has no limit"
         )
+    if model.states and -2 * poles.real.max() <= 8 * EPS * model.states * np.linalg.norm(model.A):
+        return Gramians(None, None, None, "the slowest mode is too slow beside the size of A to compute a Gramian")
     if not model.states:
         empty = np.zeros((0, 0))
         return Gramians(empty, empty, np.zeros(0), None)

@@ -16,6 +16,8 @@ from looplab.engine.systems.transfer_function import LARGEST, TransferFunction
 
 MAX_STATES = 50
 MAX_CHANNELS = 10
+# Below this, scaling to equal sizes would overflow.
+TINIEST = 1e-100
 
 
 def _matrix(value: npt.ArrayLike, name: str) -> FloatArray:
@@ -32,9 +34,10 @@ def _matrix(value: npt.ArrayLike, name: str) -> FloatArray:
             field=name,
             hint="for example [[0, 1], [-2, -3]]",
         )
-    if not np.isfinite(array).all() or np.abs(array).max(initial=0.0) > LARGEST:
+    sizes = np.abs(array[array != 0])
+    if not (np.isfinite(array).all() and sizes.max(initial=0.0) <= LARGEST and sizes.min(initial=1.0) >= TINIEST):
         raise InvalidInput(
-            f"{name} must hold finite numbers up to {LARGEST:g}",
+            f"{name} must hold finite numbers, zero or from {TINIEST:g} to {LARGEST:g} in size",
             field=name,
             hint="choose units in which the numbers are moderate",
         )
