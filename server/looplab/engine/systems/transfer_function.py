@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from math import isfinite
 from typing import overload
 
 import numpy as np
@@ -29,6 +30,14 @@ def _check_range(field: str, sizes: FloatArray) -> None:
             field=field,
             hint="choose a time unit in which the numbers are moderate",
         )
+
+
+def _quotient(a: float, b: float) -> float:
+    """a/b, refused where it leaves double precision."""
+    value = a / b
+    if not isfinite(value):
+        raise InvalidInput("the leading coefficients are too far apart", field="den", hint="choose other units")
+    return value
 
 
 class TransferFunction:
@@ -119,7 +128,7 @@ class TransferFunction:
             raise InvalidInput("the denominator is zero", field="den", hint="give at least one non-zero coefficient")
         if max(n.size, d.size) - 1 > MAX_ORDER:
             raise InvalidInput(f"order {max(n.size, d.size) - 1} exceeds the limit of {MAX_ORDER}", field="den")
-        return cls(roots(n), roots(d), n[0] / d[0], theta)
+        return cls(roots(n), roots(d), _quotient(float(n[0]), float(d[0])), theta)
 
     @cached_property
     def key(self) -> bytes:
