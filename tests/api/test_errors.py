@@ -13,7 +13,10 @@ LOOP: dict[str, Any] = {
 }
 TUNE: dict[str, Any] = {"plant": {"type": "expr", "text": "1/(s+1)^3"}}
 CHECK = "/labs/ziegler-nichols-third-order/check"
-ROUTES = ["/loop", "/tune", CHECK, "/labs/validate"]
+ROUTES = [
+    *("/loop", "/tune", "/frequency", "/margins", "/nyquist", "/root-locus", "/laplace", "/approximate", "/routh"),
+    *("/stability", "/response", "/state-space", CHECK, "/labs/validate"),
+]
 RAW = {
     "empty": b"",
     "open": b"{",
