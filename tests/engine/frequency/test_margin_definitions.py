@@ -95,6 +95,22 @@ def test_delay_margin_is_the_limit_of_the_dead_time(L: TransferFunction) -> None
     assert rhp_closed_loop_poles(zeros, poles, L.gain, L.theta + dm * (1 + 1e-3)) >= 2
 
 
+@pytest.mark.parametrize("excess", [1e-2, 1e-3, 1e-5, 1e-7])
+def test_two_crossovers_between_grid_points(excess: float) -> None:
+    """A resonance that reaches just over 1: K/(s^2 + 2 zeta s + 1) peaks at 1/(2 zeta sqrt(1 - zeta^2)).
+
+    |L| = 1 where (1 - w^2)^2 + (2 zeta w)^2 = K^2, a quadratic in w^2.
+    """
+    zeta = 0.3
+    K = 2 * zeta * np.sqrt(1 - zeta**2) * (1 + excess)
+    found = margins(TransferFunction.from_polynomials([K], [1, 2 * zeta, 1]))
+    b, c = 2 * zeta**2 - 1, 1 - K**2
+    expected = [np.sqrt(-b - np.sqrt(b * b - c)), np.sqrt(-b + np.sqrt(b * b - c))]
+    assert [x.omega for x in found.gain_crossovers] == pytest.approx(expected, rel=1e-15 / excess + 1e-12)
+    assert found.PM_deg is not None
+    assert found.delay_margin is not None
+
+
 @pytest.mark.parametrize("gain", [0.0])
 def test_a_loop_without_gain(gain: float) -> None:
     found = margins(TransferFunction((), (-1.0,), gain))
