@@ -8,11 +8,14 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
+from looplab.engine.frequency.bracketing import refine_brackets
 from looplab.engine.frequency.response import frequency_grid, log_magnitude, phase_rad
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+
+
+MOST_EXTREMA = 200
 
 
 @dataclass(frozen=True)
@@ -26,7 +29,26 @@ class Sampled:
 
 @lru_cache(maxsize=128)
 def _grid(unit: TransferFunction, low: float, high: float) -> FloatArray:
-    return frequency_grid(unit, low, high)
+    """The adaptive grid with every extremum of magnitude and phase on it, so that no pair of crossings hides."""
+    omega = frequency_grid(unit, low, high)
+
+    def magnitude_slope(x: FloatArray) -> FloatArray:
+        w = np.exp(x)
+        return -unit.log_derivative((1j * w).astype(complex)).imag * w
+
+    def phase_slope(x: FloatArray) -> FloatArray:
+        w = np.exp(x)
+        return unit.log_derivative((1j * w).astype(complex)).real * w
+
+    x = np.log(omega)
+    turning = []
+    with np.errstate(all="ignore"):
+        for slope in (magnitude_slope, phase_slope):
+            rate = slope(x)
+            at = np.flatnonzero(np.sign(rate[1:]) * np.sign(rate[:-1]) < 0)
+            if at.size <= MOST_EXTREMA:
+                turning.append(np.exp(refine_brackets(slope, x[at], x[at + 1])))
+    return np.unique(np.concatenate([omega, *turning]))
 
 
 @lru_cache(maxsize=256)

@@ -29,7 +29,7 @@ def polish_closed_loop_poles(
     -------
     roots : ndarray, shape of guess
     good : ndarray of bool
-        True where the residual \|1 + K L\| ended below 1e-8 and the root stayed near its guess.
+        True where the residual \|1 + K L\| ended below 1e-8 (or what rounding of s allows) near the guess.
     """
     s = guess.astype(complex)
     K = np.asarray(gain, dtype=float)
@@ -38,6 +38,8 @@ def polish_closed_loop_poles(
             step = np.log(-K * L(s)) / L.log_derivative(s)
             s = s - np.where(np.isfinite(step), step, 0.0)
         value = K * L(s)
-        good = np.isfinite(value) & (np.abs(1.0 + value) < 1e-8)
+        # Next to an open-loop pole L cannot be known better than the rounding of s allows.
+        knowable = 8.0 * np.finfo(float).eps * np.abs(s) * np.abs(L.log_derivative(s))
+        good = np.isfinite(value) & (np.abs(1.0 + value) < np.maximum(1e-8, np.minimum(knowable, 0.1)))
         good &= np.abs(s - guess) <= 0.3 * np.abs(guess) + 1e-6
     return s, good
