@@ -59,6 +59,8 @@ def turn(page: Page, knob: str, value: str) -> None:
     field.press("Enter")
 
 
+# The preview of a half-typed formula is refused, which the browser reports when it is slow enough to have been asked.
+@pytest.mark.allow_console("status of 422")
 def test_a_student_goes_through_the_whole_lab(lab: Page) -> None:
     card = exercise(lab, "omega-180")
     say(card, omega_180="0.2757")
