@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import Field, model_validator
 
-from looplab.engine.frequency import nyquist_count
+from looplab.engine.frequency import nyquist_count, nyquist_curve
 from looplab.engine.loop import FeedbackLoop
 from looplab.engine.systems import TransferFunction
 from looplab.schemas import Loop, Model, System, located
@@ -54,6 +54,21 @@ def nyquist_words(L: TransferFunction) -> str:
     return (
         f"Z = N + P = {count.N} + {count.P} = {count.Z}: the curve {times}{way}, L has {poles} in the right half-plane"
     )
+
+
+def nyquist_answer(L: TransferFunction, closed_loop_stable: bool) -> dict[str, Any]:
+    """The curve for omega > 0, and the count with its verdict."""
+    curve, count = nyquist_curve(L), nyquist_count(L)
+    return {
+        "omega": curve.omega,
+        "re": curve.re,
+        "im": curve.im,
+        "N": count.N,
+        "P": count.P,
+        "Z": count.Z,
+        "closed_loop_stable": closed_loop_stable,
+        "explanation": nyquist_words(L),
+    }
 
 
 LOOP_EXAMPLE: dict[str, Any] = {

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from looplab.api.open_loop import nyquist_words
+from looplab.api.open_loop import nyquist_answer
 from looplab.api.panels.context import LoopContext
-from looplab.engine.frequency import margins, nyquist_count, nyquist_curve
+from looplab.engine.frequency import margins
 from looplab.engine.frequency.sampled import Sampled, sampled
 
 DECIBELS = 20.0 / np.log(10.0)
@@ -33,27 +33,13 @@ def bode_panel(context: LoopContext) -> dict[str, Any]:
 
 def nyquist(context: LoopContext) -> dict[str, Any]:
     """The Nyquist curve with N, P and Z = N + P written out."""
-    L = context.loop.open_loop
-    curve, count = nyquist_curve(L), nyquist_count(L)
-    return {
-        "omega": curve.omega,
-        "re": curve.re,
-        "im": curve.im,
-        "N": count.N,
-        "P": count.P,
-        "Z": count.Z,
-        "closed_loop_stable": context.verdict.closed_loop_stable,
-        "explanation": nyquist_words(L),
-    }
+    return nyquist_answer(context.loop.open_loop, context.verdict.closed_loop_stable)
 
 
 def margins_panel(context: LoopContext) -> dict[str, Any]:
     """Margins and peaks; infinite or undefined ones are null with a reason."""
-    # The list of phase crossovers of a loop with dead time is long; the nearest ones matter.
     result = asdict(margins(context.loop.open_loop))
     result["closed_loop_stable"] = context.verdict.closed_loop_stable
-    result["gain_crossovers"] = list(result["gain_crossovers"])[:50]
-    result["phase_crossovers"] = list(result["phase_crossovers"])[:50]
     return result
 
 

@@ -14,7 +14,7 @@ from looplab.api.answers.frequency import FrequencyAnswer
 from looplab.api.answers.loop import MarginsAnswer, NyquistAnswer
 from looplab.api.docs import ERRORS
 from looplab.api.encode import json_response
-from looplab.api.open_loop import EXAMPLES, OpenLoopRequest, nyquist_words
+from looplab.api.open_loop import EXAMPLES, OpenLoopRequest, nyquist_answer
 from looplab.api.strict import StrictRoute
 from looplab.engine.errors import InvalidInput
 from looplab.engine.frequency import (
@@ -24,8 +24,6 @@ from looplab.engine.frequency import (
     closed_loop_bandwidth,
     frequency_grid,
     margins,
-    nyquist_count,
-    nyquist_curve,
 )
 from looplab.engine.stability import closed_loop_verdict
 
@@ -94,18 +92,4 @@ def stability_margins(request: Annotated[OpenLoopRequest, Body(openapi_examples=
 @router.post("/nyquist", summary="Nyquist curve and count", responses={200: {"model": NyquistAnswer}, **ERRORS})
 def nyquist(request: Annotated[CurveRequest, Body(openapi_examples=EXAMPLES)]) -> Response:
     """The curve for omega > 0 (mirror it for omega < 0), and Z = N + P written out."""
-    L = request.open_loop()
-    curve, count = nyquist_curve(L), nyquist_count(L)
-    return json_response(
-        {
-            "omega": curve.omega,
-            "re": curve.re,
-            "im": curve.im,
-            "N": count.N,
-            "P": count.P,
-            "Z": count.Z,
-            "closed_loop_stable": _stable(request),
-            "explanation": nyquist_words(L),
-        },
-        request.arrays,
-    )
+    return json_response(nyquist_answer(request.open_loop(), _stable(request)), request.arrays)

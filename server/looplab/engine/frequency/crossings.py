@@ -51,7 +51,7 @@ class Crossings:
     start_phase : float or None
         Phase where the curve first leaves the negative real axis [rad]; None where it never does.
     cut : bool
-        The dead time makes further phase crossovers beyond the grid, all with \\|L\\| below 0.05.
+        The dead time makes further phase crossovers beyond the grid (for a strictly proper L with \\|L\\| below 0.05).
     overrun : bool
         The dead time turns the phase more than 250 times before \\|L\\| falls below 1: the lists are not complete.
     """
@@ -91,14 +91,9 @@ def _search_grid(L: TransferFunction) -> tuple[Sampled, bool]:
     return sampled(L, ends[0], min(ends[1], reach)), overrun
 
 
-def _axis_poles(L: TransferFunction) -> FloatArray:
-    on_axis = (L.poles.imag > 0) & (np.abs(L.poles.real) <= AXIS_GAP * np.abs(L.poles))
-    return L.poles.imag[on_axis]
-
-
-def _axis_zeros(L: TransferFunction) -> FloatArray:
-    on_axis = (L.zeros.imag > 0) & (np.abs(L.zeros.real) <= AXIS_GAP * np.abs(L.zeros))
-    return L.zeros.imag[on_axis]
+def _on_axis(roots: npt.NDArray[np.complex128]) -> FloatArray:
+    """Frequencies of the roots on the positive imaginary axis [rad/time]."""
+    return np.asarray(roots.imag[(roots.imag > 0) & (np.abs(roots.real) <= AXIS_GAP * np.abs(roots))])
 
 
 def _gain_crossovers(L: TransferFunction, omega: FloatArray, log_mag: FloatArray) -> FloatArray:
@@ -157,9 +152,9 @@ def crossings(L: TransferFunction) -> Crossings:
         later = where > omega[start]
         where, direction = where[later], direction[later]
     size = log_magnitude(L, where)
-    for b in _axis_poles(L):
+    for b in _on_axis(L.poles):
         size[np.abs(where - b) <= 2 * AXIS_GAP * b] = np.inf
-    for b in _axis_zeros(L):
+    for b in _on_axis(L.zeros):
         size[np.abs(where - b) <= 2 * AXIS_GAP * b] = -np.inf
     every = np.unique(np.concatenate([omega, gain, where]))
     start_phase = None if start is None else float(phase[start])

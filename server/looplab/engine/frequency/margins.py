@@ -90,11 +90,12 @@ def _on_grid(L: TransferFunction, omega: FloatArray) -> tuple[npt.NDArray[np.com
 def _sensitivity_peaks(L: TransferFunction, omega: FloatArray) -> dict[str, float]:
     Ms, omega_Ms = _peak(L, omega, "S")
     Mt, omega_Mt = _peak(L, omega, "T")
+    # Limits of L at both ends of the frequency axis, where they are finite.
     ends: list[tuple[float, float]] = []
-    if L.origin_order == 0:
-        ends.append((L.origin_gain, 0.0))
-    if L.theta == 0 and L.relative_degree == 0:
-        ends.append((L.gain, np.inf))
+    if L.origin_order <= 0:
+        ends.append((L.dc_gain, 0.0))
+    if L.theta == 0 or L.relative_degree > 0:
+        ends.append((L.high_frequency_gain, np.inf))
     for value, w in ends:
         if value == -1.0:
             Ms, omega_Ms, Mt, omega_Mt = np.inf, w, np.inf, w
@@ -110,10 +111,6 @@ def _sensitivity_peaks(L: TransferFunction, omega: FloatArray) -> dict[str, floa
             Ms, omega_Ms = (np.inf if c >= 1.0 else 1.0 / (1.0 - c)), np.inf
         if c >= 1.0 or c / (1.0 - c) > Mt:
             Mt, omega_Mt = (np.inf if c >= 1.0 else c / (1.0 - c)), np.inf
-    if omega_Ms == omega[0] and L.relative_degree >= 0 and Ms <= 1.0 + 1e-12:
-        Ms = 1.0
-    if L.relative_degree > 0 and Ms <= 1.0:
-        Ms, omega_Ms = 1.0, np.inf
     if L.origin_order > 0 and Mt <= 1.0:
         Mt, omega_Mt = 1.0, 0.0
     return {"Ms": Ms, "omega_Ms": omega_Ms, "Mt": Mt, "omega_Mt": omega_Mt}
@@ -164,6 +161,10 @@ def margins(L: TransferFunction) -> Margins:
     ]
     if L.origin_order == 0 and L.origin_gain < 0:
         phase_crossovers.insert(0, PhaseCrossover(0.0, 1.0 / abs(L.origin_gain)))
+    if found.cut:
+        reasons["phase_crossovers"] = (
+            f"dead time makes them infinitely many: listed up to omega = {found.omega[-1]:.4g}"
+        )
     GM = omega_180 = GM_dB = None
     if phase_crossovers:
         nearest = min(phase_crossovers, key=lambda c: abs(np.log(c.GM)))
