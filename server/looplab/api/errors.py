@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from typing import Any
 
 import orjson
 from fastapi import FastAPI, HTTPException, Request
@@ -14,6 +12,7 @@ from starlette.exceptions import HTTPException as StarletteHTTPException
 from starlette.responses import Response
 
 from looplab.engine.errors import EngineError
+from looplab.schemas import json_path
 
 
 class ApiError(HTTPException):
@@ -40,23 +39,6 @@ def code_of(error: EngineError) -> str:
     return re.sub(r"(?<!^)(?=[A-Z])", "_", type(error).__name__).lower()
 
 
-def json_path(location: Sequence[int | str], body: Any) -> str:
-    """loop.plant.num[2] from pydantic's location, without the names of union members that are not in the request."""
-    path = ""
-    at = body
-    parts = list(location[1:] if location and location[0] == "body" else location)
-    for i, part in enumerate(parts):
-        if isinstance(part, int):
-            path += f"[{part}]"
-            at = at[part] if isinstance(at, list) and part < len(at) else None
-        elif isinstance(at, dict) and part in at:
-            path += f".{part}"
-            at = at[part]
-        elif i == len(parts) - 1 and isinstance(at, dict):
-            path += f".{part}"
-    return path.removeprefix(".")
-
-
 _HINTS = {
     "missing": "this field is required",
     "extra_forbidden": "remove it, or look up the field's name in /api/v1/openapi.json",
@@ -79,7 +61,7 @@ def _validation_error(error: RequestValidationError) -> ApiError:
         message = f"unknown field {str(first['loc'][-1])[:60]!r}"
     elif first["type"] == "missing":
         message = f"the field {str(first['loc'][-1])!r} is missing"
-    path = json_path(first["loc"], error.body)
+    path = json_path(error.body, first["loc"][1:])
     return ApiError(422, "invalid_request", message, path, _HINTS.get(first["type"]))
 
 

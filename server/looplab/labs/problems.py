@@ -9,6 +9,7 @@ from pydantic import BaseModel, ValidationError
 from looplab.engine.errors import EngineError
 from looplab.labs.schema import Lab
 from looplab.labs.text import text_problems
+from looplab.schemas import json_path
 
 
 @dataclass(frozen=True)
@@ -40,20 +41,6 @@ class LabError(EngineError):
 def schema_problems(data: Any, error: ValidationError) -> list[Problem]:
     """Pydantic's errors with paths that exist in the author's JSON."""
     return [Problem(json_path(data, item["loc"]), _sentence(item)) for item in error.errors(include_url=False)]
-
-
-def json_path(data: Any, location: Sequence[int | str]) -> str:
-    """`parts[0].blocks[2].tolerance`, without the names of union members that pydantic puts in between."""
-    path = ""
-    for depth, key in enumerate(location):
-        last = depth == len(location) - 1
-        if isinstance(key, int) and isinstance(data, list):
-            path += f"[{key}]"
-            data = data[key] if key < len(data) else None
-        elif isinstance(key, str) and isinstance(data, dict) and (key in data or last):
-            path += f".{key}" if path else key
-            data = data.get(key)
-    return path
 
 
 def texts(lab: Lab) -> Iterator[tuple[str, str]]:

@@ -1,6 +1,6 @@
 """The JSON shapes of systems, controllers and loops, shared by the API and the labs, and their way to the engine."""
 
-from looplab.schemas.base import Model, located
+from looplab.schemas.base import Model, json_path, located
 from looplab.schemas.controllers import Controller, ParallelPID, StandardPID
 from looplab.schemas.inputs import InputShape
 from looplab.schemas.loops import Loop
@@ -29,6 +29,7 @@ __all__ = [
     "StateSpaceSystem",
     "System",
     "ZPKSystem",
+    "json_path",
     "located",
     "state_space_latex",
 ]

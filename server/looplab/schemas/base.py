@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -27,6 +27,20 @@ DeadTime = Annotated[float, Field(ge=0, description="Dead time, exact [time].")]
 def to_complex(value: list[float] | float) -> complex:
     """The number meant by [re, im] or by a plain number."""
     return complex(*value) if isinstance(value, list) else complex(value)
+
+
+def json_path(data: Any, location: Sequence[int | str]) -> str:
+    """`parts[0].blocks[2].tolerance`, without the names of union members that pydantic puts in between."""
+    path = ""
+    for depth, key in enumerate(location):
+        last = depth == len(location) - 1
+        if isinstance(key, int) and isinstance(data, list):
+            path += f"[{key}]"
+            data = data[key] if key < len(data) else None
+        elif isinstance(key, str) and isinstance(data, dict) and (key in data or last):
+            path += f".{key}" if path else key
+            data = data.get(key)
+    return path
 
 
 @contextmanager
