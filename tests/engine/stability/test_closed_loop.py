@@ -179,3 +179,25 @@ def test_the_limit_of_n_equal_lags(n: int, expanded: bool) -> None:
             exact = -1 + K ** (1 / n) * np.exp(1j * np.pi * (2 * np.arange(n) + 1) / n)
             gap = np.abs(closed_loop_poles(loop).poles[:, None] - exact)
             assert max(gap.min(axis=0).max(), gap.min(axis=1).max()) < 1e-13
+
+
+@pytest.mark.parametrize(
+    ("plant", "C", "poles", "verdict"),
+    [
+        ("1/(s+2)", PID(0.0), [-2], "stable"),
+        ("1/(s+2)", PID(0.0, 1.0), [0, -2], "marginal"),
+        ("exp(-s)/(s-1)", PID(0.0), [1], "unstable"),
+        ("0/(s-1)", PID(3.0), [1], "unstable"),
+    ],
+)
+def test_a_loop_that_is_cut_keeps_its_poles(plant: str, C: PID, poles: list[float], verdict: str) -> None:
+    cut = loop(plant, C)
+    assert closed_loop_poles(cut).poles.tolist() == poles
+    assert closed_loop_verdict(cut).verdict == verdict
+    assert margins(cut.open_loop).closed_loop_stable == (verdict == "stable")
+
+
+def test_of_poles_above_one_another_the_slowest_is_named() -> None:
+    """0.5 e^{-s} = -1: s = ln 0.5 + j pi (2k+1)."""
+    found = closed_loop_poles(loop("exp(-s)", 0.5)).poles
+    assert found[:4] == pytest.approx(np.log(0.5) + 1j * np.pi * np.array([1, -1, 3, -3]), abs=1e-10)

@@ -46,7 +46,8 @@ class Verdict:
 
 
 def _sorted(poles: ComplexArray) -> ComplexArray:
-    return poles[np.lexsort((poles.imag, np.round(poles.real, 9)))[::-1]]
+    """Rightmost first; of those above one another the slowest first."""
+    return poles[np.lexsort((-poles.imag, np.abs(poles.imag), -np.round(poles.real, 9)))]
 
 
 def _dead_time_poles(loop: FeedbackLoop) -> ComplexArray:
@@ -108,7 +109,10 @@ def closed_loop_poles(loop: FeedbackLoop) -> ClosedLoopPoles:
     ----------
     .. [1] D. Breda, S. Maset, R. Vermiglio, SIAM J. Sci. Comput. 27 (2005) 482-495 (pseudospectral collocation).
     """
-    if loop.theta == 0.0 or loop.open_loop.gain == 0.0:
+    if loop.open_loop.gain == 0.0:
+        # The loop is cut: the poles of plant and controller stay where they are.
+        return ClosedLoopPoles(_sorted(loop.open_loop.poles), True)
+    if loop.theta == 0.0:
         poles = np.linalg.eigvals(loop_equations(loop).closed_loop_matrix()).astype(complex)
         polished, good = polish_closed_loop_poles(loop.open_loop, poles, steps=2)
         return ClosedLoopPoles(_sorted(np.where(good, polished, poles)), True)
