@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from looplab.engine.errors import IllPosedLoop
-from looplab.engine.loop.controllers import PID
+from looplab.engine.loop.controllers import PID, require_causal
 from looplab.engine.systems.transfer_function import TransferFunction
 
 
@@ -36,7 +36,7 @@ class FeedbackLoop:
     def __post_init__(self) -> None:
         self.plant.require_proper("plant")
         C = self.controller.to_transfer_function() if isinstance(self.controller, PID) else self.controller
-        C.require_proper("controller")
+        require_causal(C)
         object.__setattr__(self, "C", C)
         product = C.high_frequency_gain * self.plant.high_frequency_gain
         if self.theta == 0 and abs(1.0 + product) < 1e-12:
