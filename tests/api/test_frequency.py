@@ -26,7 +26,11 @@ def test_frequency_of_a_lag(post: Any) -> None:
     assert answer["mag_dB"][1] == pytest.approx(-3.0102999566398, abs=1e-10)
     assert answer["phase_deg"][1] == pytest.approx(-45)
     assert answer["bandwidth"]["omega"] == pytest.approx(0.5)
-    assert answer["asymptotes"]["corners"] == [{"omega": 0.5, "slope_change": -1, "kind": "pole"}]
+    (corner,) = answer["asymptotes"]["corners"]
+    assert corner == {
+        "omega": 0.5, "kind": "pole", "s": [-0.5, 0], "multiplicity": 1, "zeta": None, "slope_change": -1,
+        "phase_change_deg": -90, "phase_from": pytest.approx(0.05), "phase_to": pytest.approx(5),
+    }  # fmt: skip
 
 
 def test_margins_of_the_notes(post: Any) -> None:

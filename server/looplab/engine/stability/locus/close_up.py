@@ -87,9 +87,7 @@ def locus_close_up(L: TransferFunction, view: Window) -> LocusCloseUp:
     if not (np.isfinite([left, right, bottom, top]).all() and width > 0 and height > 0):
         raise InvalidInput("a window has [low, high] for re and for im, low < high", field="view")
     if min(width, height) < SMALLEST * far:
-        raise InvalidInput(
-            "the window is too small to show more than rounding", field="view", hint="zoom out a little"
-        )
+        raise InvalidInput("the window is too small to show more than rounding", field="view", hint="zoom out a little")
     whole = root_locus(L)
     window = _Glass(left, bottom, width, height)
     pieces: list[LocusPiece] = []
@@ -151,9 +149,7 @@ def _exact_meetings(
         else:
             # K - K_b = -K_b (ln L)'' (s - s_b)^2 / 2 next to it.
             bend = abs((1.0 / (b.s - L.poles) ** 2).sum() - (1.0 / (b.s - L.zeros) ** 2).sum())
-            meets = any(
-                bend * abs(s[j] - b.s) ** 2 < 18.0 * abs(whole.gains[j] / b.K - 1.0) for j in beside
-            )
+            meets = any(bend * abs(s[j] - b.s) ** 2 < 18.0 * abs(whole.gains[j] / b.K - 1.0) for j in beside)
         if meets:
             s[i] = b.s
     there = np.flatnonzero(np.isfinite(s))
