@@ -85,7 +85,7 @@ def bode_words(criterion: BodeCriterion) -> str:
         size = "<" if c.stable else "=" if c.stable is None else ">"
         where = f"|L| = {c.magnitude:.4g} {size} 1 at omega_180 = {c.omega_180:.4g}"
     elif c.stable:
-        where = "the phase never reaches -180 deg"
+        where = "the phase never crosses -180 deg"
     else:
         where = "the phase crossovers cannot be listed"
     if c.stable is None and c.magnitude is None:
