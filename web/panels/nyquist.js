@@ -2,10 +2,11 @@
 
 /** @import {Api} from "../core/api.js" */
 /** @import {Store} from "../core/store.js" */
-/** @import {NyquistPanel} from "../core/types.js" */
+/** @import {IndentationArc, NyquistPanel} from "../core/types.js" */
 
 import { PLOT_HELP } from "../core/explain.js";
 import { formatNumber, sentence } from "../core/format.js";
+import { contourSketch } from "../components/contour-sketch.js";
 import { h } from "../components/dom.js";
 import { mountPlotPanel } from "../components/plot-panel.js";
 import "../components/segmented-control.js";
@@ -35,7 +36,7 @@ export function mount(host, store, _api) {
       const ghosts = store.snapshots.flatMap(({ panels }) => panels.nyquist ?? []);
       return nyquistPlot({ nyquist, margins: margins ?? null, whole: choice.value === "whole", ghosts }, theme, held);
     },
-    note: () => (answers.panels.nyquist ? count(answers.panels.nyquist) : ""),
+    note: () => (answers.panels.nyquist ? words(answers.panels.nyquist) : ""),
     table() {
       const nyquist = answers.panels.nyquist;
       if (!nyquist) return null;
@@ -48,6 +49,31 @@ export function mount(host, store, _api) {
   });
   choice.addEventListener("value-change", () => panel.redraw({ refit: true }));
   return panel.dispose;
+}
+
+/** The count, Bode's criterion beside it, and the contour where it goes round poles. @param {NyquistPanel} nyquist */
+function words(nyquist) {
+  const { arcs, bode_criterion: bode } = nyquist;
+  const verdict = bode.agrees === false ? "bad" : bode.applies ? "good" : "open";
+  return h(
+    "div",
+    { class: "nyquist-note" },
+    arcs.length > 0 ? contourSketch(arcs) : null,
+    h(
+      "div",
+      {},
+      h("p", {}, count(nyquist)),
+      arcs.length > 0 ? h("p", {}, arcs.map(arcInWords).join(" ")) : null,
+      h("p", { class: `bode-criterion ${verdict}` }, bode.explanation.replaceAll("-180 deg", "−180°").replaceAll("omega_180", "ω180").replaceAll("+-", "±")),
+    ),
+  );
+}
+
+/** @param {IndentationArc} arc */
+function arcInWords({ omega, multiplicity, turn_deg }) {
+  const where = omega === 0 ? `${multiplicity === 1 ? "The pole" : `${multiplicity} poles`} at the origin` : `${multiplicity === 1 ? "The pole" : `${multiplicity} poles`} at ±${formatNumber(omega)}i`;
+  const each = omega === 0 ? "" : " each";
+  return `${where}, passed on the right: L turns${each} ${turn_deg}° clockwise at infinity, drawn on the rim.`;
 }
 
 /** Z = N + P with this loop's numbers, and what they count. @param {NyquistPanel} nyquist @returns {Node | string} */

@@ -1,13 +1,16 @@
 /** Nyquist plot: L(iω) and its mirror, the point −1, the unit circle, and the direction of growing ω. */
 
-/** @import {Figure, MarginsPanel, NyquistPanel, Range, Theme, Trace} from "../core/types.js" */
+/** @import {Figure, IndentationArc, MarginsPanel, NyquistPanel, Range, Theme, Trace} from "../core/types.js" */
 /** @import {Held} from "./axes.js" */
 
 import { axis, baseLayout, extent, holdRange } from "./axes.js";
+import { arcPoints, cutAtRim, rimTraces } from "./nyquist_rim.js";
 import { ghostLine, lineOf } from "./signals.js";
 
 /** What matters happens about −1; a curve that comes from far away (an integrator, a high gain) is cut here. */
 const NEAR = { least: 1.6, most: 5 };
+/** The rim, as a share of the way from the origin to the nearest edge: room for an arc that widens, and its arrows. */
+const RIM = 0.86;
 const CIRCLE = Array.from({ length: 121 }, (_, i) => (i * Math.PI) / 60);
 
 /**
@@ -25,14 +28,16 @@ const CIRCLE = Array.from({ length: 121 }, (_, i) => (i * Math.PI) / 60);
  * @returns {Figure}
  */
 export function nyquistPlot({ nyquist, margins, whole, ghosts }, theme, held) {
-  const { re, im } = nyquist;
-  const mirrored = Float64Array.from(im, (value) => -value);
   const line = lineOf("L", theme);
-  const box = windowOf(nyquist, whole ? Infinity : nearOf(margins));
+  const reach = reachOf(nyquist, whole, nearOf(margins));
+  const box = Number.isFinite(reach) ? squareOf(reach / RIM) : windowOf(nyquist);
   const ranges = {
     xaxis: holdRange(held, "xaxis", box.re[0], box.re[1]),
     yaxis: holdRange(held, "yaxis", box.im[0], box.im[1]),
   };
+  const rim = Number.isFinite(reach) ? RIM * Math.min(...[...ranges.xaxis, ...ranges.yaxis].map(Math.abs)) : Infinity;
+  const { inside, outside } = cutAtRim(nyquist, rim);
+  const mirrored = inside.y.map((value) => (value === null ? null : -value));
   const size = 0.03 * (ranges.yaxis[1] - ranges.yaxis[0]);
   const hover = "L = %{x:.4~g} %{y:+.4~g} i";
 
@@ -48,8 +53,9 @@ export function nyquistPlot({ nyquist, margins, whole, ghosts }, theme, held) {
       hoverinfo: "skip",
     },
     ...ghosts.map((ghost) => /** @type {Trace} */ ({ type: "scatter", mode: "lines", name: "kept L", x: ghost.re, y: ghost.im, line: ghostLine(theme), hoverinfo: "skip" })),
-    { type: "scatter", mode: "lines", name: "ω < 0", x: re, y: mirrored, line: { ...line, width: 1.25, dash: "dash" }, hoverinfo: "skip" },
-    { type: "scatter", mode: "lines", name: "ω > 0", x: re, y: im, line, hovertemplate: `${hover}<extra></extra>` },
+    { type: "scatter", mode: "lines", name: "ω < 0", x: inside.x, y: mirrored, line: { ...line, width: 1.25, dash: "dash" }, hoverinfo: "skip" },
+    { type: "scatter", mode: "lines", name: "ω > 0", ...inside, line, hovertemplate: `${hover}<extra></extra>` },
+    ...rimTraces(nyquist, rim, outside, theme),
     arrow(nyquist, ranges, size, 1, line.color),
     arrow(nyquist, ranges, size, -1, line.color),
     crossings(margins, theme),
@@ -71,6 +77,7 @@ export function nyquistPlot({ nyquist, margins, whole, ghosts }, theme, held) {
       xaxis: axis(theme, "Re L", ranges.xaxis),
       // One scale on both axes: the unit circle is a circle, and an angle is an angle.
       yaxis: axis(theme, "Im L", ranges.yaxis, { scaleanchor: "x", scaleratio: 1 }),
+      annotations: Number.isFinite(rim) ? nyquist.arcs.map((arc) => arcLabel(arc, rim, theme)) : [],
     },
   };
 }
@@ -81,17 +88,50 @@ function nearOf(margins) {
   return Math.max(NEAR.least, ...reaches);
 }
 
-/** @param {NyquistPanel} nyquist @param {number} near @returns {{re: Range, im: Range}} */
-function windowOf({ re, im }, near) {
-  /** @type {number[]} */
-  const shown = [];
-  for (let i = 0; i < re.length; i++) {
+/**
+ * The radius from which on the curve is drawn on the rim; Infinity where all of it is shown as it is.
+ * @param {NyquistPanel} nyquist
+ * @param {boolean} whole
+ * @param {number} near
+ */
+function reachOf({ re, im, arcs }, whole, near) {
+  if (!whole) return near;
+  if (arcs.length === 0) return Infinity;
+  // Next to a pole on the axis the curve has no end: as far as its last bend or crossing, and well beyond.
+  let far = near;
+  for (let i = 1; i < re.length - 1; i++) {
     const size = Math.hypot(re[i] ?? 0, im[i] ?? 0);
-    if (size <= near) shown.push(i);
+    const [before, after] = [Math.hypot(re[i - 1] ?? 0, im[i - 1] ?? 0), Math.hypot(re[i + 1] ?? 0, im[i + 1] ?? 0)];
+    const crosses = (im[i - 1] ?? 0) < 0 !== (im[i] ?? 0) < 0 || (re[i - 1] ?? 0) < 0 !== (re[i] ?? 0) < 0;
+    if ((crosses || (size >= before && size > after)) && size < 1e4) far = Math.max(far, size);
   }
-  const pick = (/** @type {import("../core/types.js").Numbers} */ values) => shown.map((i) => values[i] ?? 0);
-  const reach = Math.max(...extent(pick(im).map(Math.abs), [1]));
-  return { re: extent(pick(re), [-1.5, 1]), im: [-reach, reach] };
+  return 2.5 * far;
+}
+
+/** @param {number} half @returns {{re: Range, im: Range}} */
+function squareOf(half) {
+  return { re: [-half, half], im: [-half, half] };
+}
+
+/** @param {NyquistPanel} nyquist @returns {{re: Range, im: Range}} */
+function windowOf({ re, im }) {
+  const reach = Math.max(...extent(im, [1]).map(Math.abs));
+  return { re: extent(re, [-1.5, 1]), im: [-reach, reach] };
+}
+
+/** How far L turns at infinity, beside the middle of its arc. @param {IndentationArc} arc @param {number} rim @param {Theme} theme */
+function arcLabel(arc, rim, theme) {
+  const { x, y } = arcPoints(arc, 0.78 * rim);
+  const middle = Math.floor(x.length / 2);
+  return {
+    x: x[middle],
+    y: y[middle],
+    text: `∞: ${arc.turn_deg}° ↻`,
+    showarrow: false,
+    bgcolor: theme.paper,
+    borderpad: 1,
+    font: { size: theme.fontSize - 1, color: theme.signal["infinity"] ?? theme.ink },
+  };
 }
 
 /**
