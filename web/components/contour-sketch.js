@@ -4,11 +4,11 @@
 
 import { svg } from "./dom.js";
 
-const SIZE = 84;
-const AXIS = 30;
+const SIZE = 64;
+const AXIS = 22;
 const MIDDLE = SIZE / 2;
-const RADIUS = 36;
-const DENT = 6;
+const RADIUS = 28;
+const DENT = 5;
 
 /** @param {IndentationArc[]} arcs  of poles with ω ≥ 0 @returns {SVGElement} */
 export function contourSketch(arcs) {

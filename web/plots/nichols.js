@@ -33,7 +33,7 @@ export function nicholsPlot({ bode, margins, ghosts, timeUnit }, theme, held) {
   const { omega, L } = bode;
   const unit = escapePlotly(timeUnit);
   const seen = Array.from(L.phase_deg).filter((_, i) => inside(L.mag_dB[i], LIMITS.mag_dB));
-  const phases = clip(extent(seen, [-225, -90]), LIMITS.phase_deg);
+  const phases = clip(extent(seen, [-225, -89]), LIMITS.phase_deg);
   const levels = clip(extent(L.mag_dB, [-20, 20]), LIMITS.mag_dB);
   const ranges = { xaxis: holdRange(held, "xaxis", phases[0], phases[1], 45), yaxis: holdRange(held, "yaxis", levels[0], levels[1], 10) };
 

@@ -10,7 +10,7 @@ import { ghostLine, lineOf } from "./signals.js";
 /** What matters happens about −1; a curve that comes from far away (an integrator, a high gain) is cut here. */
 const NEAR = { least: 1.6, most: 5 };
 /** The rim, as a share of the way from the origin to the nearest edge: room for an arc that widens, and its arrows. */
-const RIM = 0.86;
+const RIM = 0.84;
 const CIRCLE = Array.from({ length: 121 }, (_, i) => (i * Math.PI) / 60);
 
 /**
@@ -119,17 +119,18 @@ function windowOf({ re, im }) {
   return { re: extent(re, [-1.5, 1]), im: [-reach, reach] };
 }
 
-/** How far L turns at infinity, beside the middle of its arc. @param {IndentationArc} arc @param {number} rim @param {Theme} theme */
+/** How far L turns at infinity, inside its arc and off the arrow on it. @param {IndentationArc} arc @param {number} rim @param {Theme} theme */
 function arcLabel(arc, rim, theme) {
-  const { x, y } = arcPoints(arc, 0.78 * rim);
-  const middle = Math.floor(x.length / 2);
+  const { x, y } = arcPoints(arc, 0.95 * rim);
+  const at = Math.round(((x.length - 1) * 45) / arc.turn_deg);
+  const [re, im] = [x[at] ?? 0, y[at] ?? 0];
   return {
-    x: x[middle],
-    y: y[middle],
+    x: re,
+    y: im,
     text: `∞: ${arc.turn_deg}° ↻`,
     showarrow: false,
-    bgcolor: theme.paper,
-    borderpad: 1,
+    xanchor: re > 0 ? "right" : "left",
+    yanchor: im > 0 ? "top" : "bottom",
     font: { size: theme.fontSize - 1, color: theme.signal["infinity"] ?? theme.ink },
   };
 }

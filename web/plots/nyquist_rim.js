@@ -8,8 +8,9 @@
 
 /** Points an arc is drawn with, for each half turn. */
 const PER_HALF_TURN = 48;
-/** An arc that turns more than once widens by this share, so that it does not cover itself. */
+/** An arc that turns more than once widens by this share, so that it does not cover itself; and a second lies above the first. */
 const SPIRAL = 0.09;
+const LIFT = 0.05;
 
 /** @typedef {{x: (number | null)[], y: (number | null)[]}} Path */
 
@@ -18,21 +19,26 @@ const SPIRAL = 0.09;
  * @param {IndentationArc} arc
  * @param {number} radius
  * @param {1 | -1} side
+ * @param {number} lift  how much above the rim, as a share of it; the ends are on it
  * @returns {{x: number[], y: number[]}}
  */
-export function arcPoints({ start_deg, end_deg, turn_deg }, radius, side = 1) {
+export function arcPoints({ start_deg, end_deg, turn_deg }, radius, side = 1, lift = 0) {
   const [from, to] = side > 0 ? [start_deg, end_deg] : [-end_deg, -start_deg];
   const count = Math.ceil((PER_HALF_TURN * turn_deg) / 180);
   const spiral = turn_deg > 360 ? SPIRAL : 0;
+  /** @type {number[]} */
   const x = [];
+  /** @type {number[]} */
   const y = [];
-  for (let i = 0; i <= count; i++) {
-    const share = i / count;
+  /** @param {number} share @param {number} r */
+  const add = (share, r) => {
     const angle = ((from + share * (to - from)) * Math.PI) / 180;
-    const r = radius * (1 + spiral * share);
     x.push(r * Math.cos(angle));
     y.push(r * Math.sin(angle));
-  }
+  };
+  if (lift > 0) add(0, radius);
+  for (let i = 0; i <= count; i++) add(i / count, radius * (1 + lift + (spiral * i) / count));
+  if (lift + spiral > 0) add(1, radius);
   return { x, y };
 }
 
@@ -141,9 +147,11 @@ export function rimTraces({ arcs }, radius, outside, theme) {
   const arrows = { x: [], y: [] };
   /** @type {(string | null)[]} */
   const words = [];
+  let lift = 0;
   for (const arc of Number.isFinite(radius) ? arcs : []) {
     for (const side of arc.omega === 0 ? /** @type {const} */ ([1]) : /** @type {const} */ ([1, -1])) {
-      const { x, y } = arcPoints(arc, radius, side);
+      const { x, y } = arcPoints(arc, radius, side, lift);
+      lift += LIFT;
       lines.x.push(...x, null);
       lines.y.push(...y, null);
       words.push(...x.map(() => arcInWords(arc, side)), null);
