@@ -39,9 +39,14 @@ function construction({ breakaways, imaginary_axis_crossings, asymptotes, depart
   ];
 }
 
+/** On the real axis rounding leaves an imaginary part that means nothing. @param {number | null} im @param {number} re */
+function cleaned(im, re) {
+  return im !== null && Math.abs(im) < 1e-12 * Math.abs(re) ? 0 : im;
+}
+
 /** @param {RootLocusPanel} locus @param {1 | -1} sign @returns {Row[]} */
 function branchRows({ branches, gains }, sign) {
   return branches.flatMap(({ first, re, im }, n) =>
-    Array.from(re, (value, i) => [`branch ${n + 1}${sign > 0 ? "" : ", K < 0"}`, value, im[i] ?? null, sign * (gains?.[first + i] ?? NaN)]),
+    Array.from(re, (value, i) => [`branch ${n + 1}${sign > 0 ? "" : ", K < 0"}`, value, cleaned(im[i] ?? null, value), sign * (gains?.[first + i] ?? NaN), null]),
   );
 }

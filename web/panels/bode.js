@@ -78,13 +78,20 @@ export function mount(host, store, _api) {
 
 /** The corners first, where they are wanted, then the curves. @param {BodePanel} bode @param {AsymptotesPanel | null} sketch @param {string} unit @returns {Table} */
 function bodeTable({ omega, L, P, C }, sketch, unit) {
-  const header = [`ω [rad/${unit}]`, "|L| [dB]", "arg L [°]", "|P| [dB]", "arg P [°]", "|C| [dB]", "arg C [°]"];
-  const rows = Array.from(omega, (w, i) => [w, ...[L, P, C].flatMap(({ mag_dB, phase_deg }) => [mag_dB[i] ?? null, phase_deg[i] ?? null])]);
+  const others = [P, C];
+  const header = [`ω [rad/${unit}]`, "|L| [dB]", "arg L [°]", ...(sketch ? ["corner of the asymptotes"] : []), "|P| [dB]", "arg P [°]", "|C| [dB]", "arg C [°]"];
+  const rows = Array.from(omega, (w, i) => [
+    w,
+    L.mag_dB[i] ?? null,
+    L.phase_deg[i] ?? null,
+    ...(sketch ? [""] : []),
+    ...others.flatMap(({ mag_dB, phase_deg }) => [mag_dB[i] ?? null, phase_deg[i] ?? null]),
+  ]);
   if (!sketch) return { header, rows };
   const blank = [null, null, null, null];
   const corners = [
-    [0, null, null, ...blank, startInWords(sketch)],
-    ...sketch.corners.map((corner) => [corner.omega, levelAt(sketch, corner.omega), phaseLineAt(sketch, corner.omega), ...blank, cornerInWords(corner, unit)]),
+    [0, null, sketch.initial_phase_deg, startInWords(sketch), ...blank],
+    ...sketch.corners.map((corner) => [corner.omega, levelAt(sketch, corner.omega), phaseLineAt(sketch, corner.omega), cornerInWords(corner, unit), ...blank]),
   ];
-  return { header: [...header, "corner of the asymptotes"], rows: [...corners, ...rows], lead: corners.length };
+  return { header, rows: [...corners, ...rows], lead: corners.length };
 }

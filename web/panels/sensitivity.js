@@ -54,7 +54,7 @@ export function mount(host, store, _api) {
       const words =
         sensitivity.feedforward === 0
           ? "β = 1, so F = 0: CFS is CS, and TF is T."
-          : `β = ${formatNumber(beta)}: u = C(r − y) + F r with F = Kc(β − 1) = ${formatNumber(sensitivity.feedforward)}; r goes to u by CFS = (C + F)S and to y by TF = P(C + F)S.`;
+          : `β = ${formatNumber(beta)}, F = Kc(β − 1) = ${formatNumber(sensitivity.feedforward)}: r goes to y by TF = P(C + F)S and to u by CFS = (C + F)S.`;
       return stepping && steps?.truncated_reason ? `${words} ${sentence(steps.truncated_reason)}` : words;
     },
     table: () => (stepping ? stepTable() : frequencyTable()),

@@ -56,7 +56,7 @@ export function bodePlot({ bode, margins, curves, sketch, ghosts, timeUnit }, th
 
   const shown = curves.map((curve) => bode[curve]);
   const mag = clip(extent(...shown.map((r) => r.mag_dB)), LIMITS.mag_dB);
-  const phase = clip(extent(...shown.map((r) => r.phase_deg), [-180]), LIMITS.phase_deg);
+  const phase = clip(extent(...shown.map((r) => r.phase_deg), sketch?.phase_deg ?? [], [-180]), LIMITS.phase_deg);
   const [first, last] = [Math.log10(omega[0] ?? 0.01), Math.log10(omega[omega.length - 1] ?? 100)];
   const ranges = {
     xaxis: held.moving && held.ranges["xaxis"] ? held.ranges["xaxis"] : /** @type {[number, number]} */ ([first, last]),

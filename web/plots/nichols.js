@@ -9,7 +9,9 @@ import { M_LEVELS_DB, mContour, N_LEVELS_DEG, nContour, onEveryTurn, openLoop, t
 import { ghostLine, lineOf } from "./signals.js";
 
 /** What lies farther out says nothing about the loop and would squeeze what does. */
-const LIMITS = { mag_dB: /** @type {Range} */ ([-40, 40]), phase_deg: /** @type {Range} */ ([-540, 180]) };
+const LIMITS = { mag_dB: /** @type {Range} */ ([-40, 40]), phase_deg: /** @type {Range} */ ([-720, 180]) };
+/** Below this [dB] dead time turns the phase on and on: such a point widens no axis. */
+const FAINT_DB = -15;
 
 /** The grid never changes: M and N contours on the turn from −360° to 0°. */
 const M_CONTOURS = M_LEVELS_DB.map((level) => mContour(10 ** (level / 20)));
@@ -32,7 +34,7 @@ const N_CONTOURS = N_LEVELS_DEG.map(nContour);
 export function nicholsPlot({ bode, margins, ghosts, timeUnit }, theme, held) {
   const { omega, L } = bode;
   const unit = escapePlotly(timeUnit);
-  const seen = Array.from(L.phase_deg).filter((_, i) => inside(L.mag_dB[i], LIMITS.mag_dB));
+  const seen = Array.from(L.phase_deg).filter((_, i) => inside(L.mag_dB[i], [FAINT_DB, LIMITS.mag_dB[1]]));
   const phases = clip(extent(seen, [-225, -89]), LIMITS.phase_deg);
   const levels = clip(extent(L.mag_dB, [-20, 20]), LIMITS.mag_dB);
   const ranges = { xaxis: holdRange(held, "xaxis", phases[0], phases[1], 45), yaxis: holdRange(held, "yaxis", levels[0], levels[1], 10) };

@@ -38,6 +38,7 @@ export function nyquistPlot({ nyquist, margins, whole, ghosts }, theme, held) {
   const rim = Number.isFinite(reach) ? RIM * Math.min(...[...ranges.xaxis, ...ranges.yaxis].map(Math.abs)) : Infinity;
   const { inside, outside } = cutAtRim(nyquist, rim);
   const mirrored = inside.y.map((value) => (value === null ? null : -value));
+  const arrowAt = whole && Number.isFinite(rim) ? 0.4 * rim : 1.25;
   const size = 0.03 * (ranges.yaxis[1] - ranges.yaxis[0]);
   const hover = "L = %{x:.4~g} %{y:+.4~g} i";
 
@@ -56,8 +57,8 @@ export function nyquistPlot({ nyquist, margins, whole, ghosts }, theme, held) {
     { type: "scatter", mode: "lines", name: "ω < 0", x: inside.x, y: mirrored, line: { ...line, width: 1.25, dash: "dash" }, hoverinfo: "skip" },
     { type: "scatter", mode: "lines", name: "ω > 0", ...inside, line, hovertemplate: `${hover}<extra></extra>` },
     ...rimTraces(nyquist, rim, outside, theme),
-    arrow(nyquist, ranges, size, 1, line.color),
-    arrow(nyquist, ranges, size, -1, line.color),
+    arrow(nyquist, ranges, arrowAt, size, 1, line.color),
+    arrow(nyquist, ranges, arrowAt, size, -1, line.color),
     crossings(margins, theme),
     {
       type: "scatter",
@@ -139,12 +140,13 @@ function arcLabel(arc, rim, theme) {
  * A chevron on the curve where it passes through the middle of what is shown.
  * @param {NyquistPanel} nyquist
  * @param {{xaxis: Range, yaxis: Range}} ranges
+ * @param {number} about  distance from the origin to look for a place at
  * @param {number} size
  * @param {1 | -1} side  1 for ω > 0, −1 for its mirror, which runs the other way
  * @param {string} color
  * @returns {Trace}
  */
-function arrow({ re, im }, ranges, size, side, color) {
+function arrow({ re, im }, ranges, about, size, side, color) {
   /** @type {Trace} */
   const trace = { type: "scatter", mode: "lines", name: "direction", x: [], y: [], line: { color, width: 2.25 }, hoverinfo: "skip" };
   // A little outside the unit circle the arrow is in sight, and off −1 and the margins.
@@ -153,7 +155,7 @@ function arrow({ re, im }, ranges, size, side, color) {
   for (let i = 1; i < re.length - 1; i++) {
     const [x, y] = [re[i] ?? 0, im[i] ?? 0];
     if (x < ranges.xaxis[0] || x > ranges.xaxis[1] || y < ranges.yaxis[0] || y > ranges.yaxis[1]) continue;
-    const distance = Math.abs(Math.hypot(x, y) - 1.25);
+    const distance = Math.abs(Math.hypot(x, y) - about);
     if (distance < miss) [best, miss] = [i, distance];
   }
   if (best < 0) return trace;

@@ -82,7 +82,7 @@ export function gangStepsPlot({ steps, curves, stable, timeUnit }, theme, held) 
     layout: {
       ...baseLayout(theme),
       xaxis: axis(theme, `t [${unit}]`, ranges.xaxis),
-      yaxis: axis(theme, "response to a unit step", ranges.yaxis),
+      yaxis: axis(theme, "step response", ranges.yaxis),
     },
   };
 }
