@@ -65,13 +65,12 @@ def indentation_arcs(L: TransferFunction) -> tuple[IndentationArc, ...]:
     .. [1] K. J. Astrom, R. M. Murray, Feedback Systems, 2nd ed., Princeton 2021, sec. 10.2.
     .. [2] K. Ogata, Modern Control Engineering, 5th ed., Prentice Hall 2010, sec. 7-5.
     """
-    return _arcs(L.unit, L.gain < 0) if L.gain else ()
+    return _arcs(L.unit) if L.gain else ()
 
 
 @lru_cache(maxsize=128)
-def _arcs(L: TransferFunction, negative: bool) -> tuple[IndentationArc, ...]:
-    """The arcs of L, or of -L: a moving gain changes none of them."""
-    turned = HALF_TURN_DEG if negative else 0.0
+def _arcs(L: TransferFunction) -> tuple[IndentationArc, ...]:
+    """The arcs of an L with gain 1 or -1: a moving gain changes none of them."""
     out = []
     heights: list[float] = []
     for b in np.sort(_on_axis(L.poles).imag):
@@ -88,7 +87,7 @@ def _arcs(L: TransferFunction, negative: bool) -> tuple[IndentationArc, ...]:
             angle = HALF_TURN_DEG if L.origin_gain < 0 else 0.0
         else:
             rest = np.angle(s - L.zeros[~zero_at]).sum() - np.angle(s - L.poles[~at]).sum() - L.theta * b
-            angle = float(np.degrees(rest))
-        start = HALF_TURN_DEG - (HALF_TURN_DEG - (angle + turned + 90.0 * m)) % 360.0
+            angle = float(np.degrees(rest)) + (HALF_TURN_DEG if L.gain < 0 else 0.0)
+        start = HALF_TURN_DEG - (HALF_TURN_DEG - (angle + 90.0 * m)) % 360.0
         out.append(IndentationArc(b, m, start, start - HALF_TURN_DEG * m))
     return tuple(out)
