@@ -89,7 +89,7 @@ export function mountPlotPanel(host, store, options) {
     figure.show(next, { moving });
     const text = options.note?.() ?? "";
     if (typeof text === "string") setText(note, text);
-    else note.replaceChildren(text);
+    else if (note.firstChild !== text) note.replaceChildren(text);
     if (moving) return;
     set(plot, { "aria-label": options.describe() });
     showLegend();

@@ -1,6 +1,6 @@
 /** The REST client: JSON in, JSON out, and one readable error for whatever goes wrong. */
 
-/** @import {LabSummary, LoopAnswer, System, TuneAnswer} from "./types.js" */
+/** @import {LabSummary, LoopAnswer, RootLocusPanel, System, TuneAnswer} from "./types.js" */
 
 import { decodeArrays } from "./decode.js";
 
@@ -65,6 +65,8 @@ export function createApi({ base = "/api/v1", fetch = globalThis.fetch.bind(glob
   return {
     /** @param {object} request @returns {Promise<LoopAnswer>} */
     loop: async (request) => decodeArrays(await call("/loop", request)),
+    /** @param {object} request @returns {Promise<Omit<RootLocusPanel, "key">>} */
+    rootLocus: (request) => call("/root-locus", request),
     /** @param {{plant?: System, model?: object, ultimate?: object, rules?: string[], types?: string[]}} request @returns {Promise<TuneAnswer>} */
     tune: (request) => call("/tune", request),
     /** @returns {Promise<{labs: LabSummary[]}>} */

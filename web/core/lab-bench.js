@@ -20,6 +20,7 @@ export function stateOf({ plant, controller, horizon, sliders }) {
       tau_I: tau_I ?? middle(sliders, "tau_I"),
       tau_D: tau_D ?? middle(sliders, "tau_D"),
       alpha,
+      beta: 1,
       action,
     },
     view: { signal: "setpoint", show: [] },

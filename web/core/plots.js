@@ -4,6 +4,7 @@ export const PLOTS = [
   { id: "step", label: "Step" },
   { id: "bode", label: "Bode" },
   { id: "nyquist", label: "Nyquist" },
+  { id: "nichols", label: "Nichols" },
   { id: "root_locus", label: "Root locus" },
   { id: "sensitivity", label: "Sensitivity" },
   { id: "numbers", label: "Numbers" },

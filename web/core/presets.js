@@ -13,7 +13,7 @@
  */
 
 /** @type {ControllerState} */
-export const DEFAULT_CONTROLLER = { type: "PI", form: "ideal", Kc: 1.4, tau_I: 2.2, tau_D: 0.45, alpha: 0.1, action: "reverse" };
+export const DEFAULT_CONTROLLER = { type: "PI", form: "ideal", Kc: 1.4, tau_I: 2.2, tau_D: 0.45, alpha: 0.1, beta: 1, action: "reverse" };
 
 /** @param {string} text @returns {System} */
 const expr = (text) => ({ type: "expr", text });

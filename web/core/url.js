@@ -22,6 +22,7 @@ export function toQuery({ plant, controller, horizon, view }) {
   query.set("tau_I", toInput(controller.tau_I));
   query.set("tau_D", toInput(controller.tau_D));
   if (controller.alpha !== 0.1) query.set("alpha", toInput(controller.alpha));
+  if (controller.beta !== 1) query.set("beta", toInput(controller.beta));
   if (controller.action !== "reverse") query.set("action", controller.action);
   if (horizon !== null) query.set("horizon", toInput(horizon));
   if (view.signal !== "setpoint") query.set("signal", view.signal);
@@ -59,6 +60,7 @@ export function fromQuery(text, fallback, plots) {
     tau_I: number("tau_I", fallback.controller.tau_I),
     tau_D: number("tau_D", fallback.controller.tau_D),
     alpha: number("alpha", fallback.controller.alpha),
+    beta: number("beta", fallback.controller.beta, () => true),
     action: choice("action", ["reverse", "direct"], fallback.controller.action),
   };
   /** @type {View} */

@@ -17,6 +17,7 @@ import * as bode from "../panels/bode.js";
 import * as controllerCard from "../panels/controller-card.js";
 import * as loopDiagram from "../panels/loop-diagram.js";
 import * as numbers from "../panels/numbers.js";
+import * as nichols from "../panels/nichols.js";
 import * as nyquist from "../panels/nyquist.js";
 import * as plantCard from "../panels/plant-card.js";
 import * as rootLocus from "../panels/root-locus.js";
@@ -30,7 +31,7 @@ import * as viewBar from "../panels/view-bar.js";
 /** @typedef {(host: HTMLElement, store: Store, api: Api) => () => void} Mount */
 
 /** @type {Record<string, Mount>} */
-const STAGE = { step: step.mount, bode: bode.mount, nyquist: nyquist.mount, root_locus: rootLocus.mount, sensitivity: sensitivity.mount, numbers: numbers.mount };
+const STAGE = { step: step.mount, bode: bode.mount, nyquist: nyquist.mount, nichols: nichols.mount, root_locus: rootLocus.mount, sensitivity: sensitivity.mount, numbers: numbers.mount };
 
 const NARROW = matchMedia("(max-width: 63.99rem)");
 

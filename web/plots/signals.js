@@ -24,11 +24,25 @@ export const SIGNALS = {
   L: { label: "L", name: "open loop", dash: "solid", width: 2.5 },
   P: { label: "P", name: "plant", dash: "dash", width: 1.75 },
   C: { label: "C", name: "controller", dash: "dot", width: 2 },
+  sketch: { label: "asymptotes", name: "straight lines of L, with what each corner is", dash: "solid", width: 1.5 },
   S: { label: "S", name: "sensitivity", dash: "solid", width: 2.25 },
   PS: { label: "PS", name: "load to output", dash: "dashdot", width: 1.75 },
   CS: { label: "CS", name: "noise to controller output", dash: "dot", width: 2 },
+  CFS: { label: "CFS", name: "setpoint to controller output, weighted", dash: "dashdot", width: 1.75 },
+  TF: { label: "TF", name: "setpoint to output, weighted", dash: "dash", width: 2 },
   T: { label: "T", name: "complementary sensitivity", dash: "longdash", width: 2.25 },
 };
+
+/**
+ * A legend's button for a signal that can be switched on and off.
+ * @param {string} signal
+ * @param {boolean} on
+ * @param {() => void} toggle
+ */
+export function legendToggle(signal, on, toggle) {
+  const { label, name, dash } = /** @type {Signal} */ (SIGNALS[signal]);
+  return { signal, label, name, dash, on, toggle };
+}
 
 /**
  * @param {keyof typeof SIGNALS} signal

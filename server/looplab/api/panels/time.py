@@ -6,6 +6,7 @@ from typing import Any
 
 from looplab.api.panels.context import LoopContext
 from looplab.engine.loop import Response, step_metrics
+from looplab.engine.loop.gang_of_six import GANG, gang_steps
 
 
 def _response(response: Response) -> dict[str, Any]:
@@ -34,4 +35,16 @@ def metrics(context: LoopContext) -> dict[str, Any]:
     return {
         "setpoint": vars(step_metrics(result.setpoint, setpoint=1.0, stable=stable)),
         "load": vars(step_metrics(result.load, setpoint=0.0, stable=stable)),
+    }
+
+
+def gang(context: LoopContext) -> dict[str, Any]:
+    """Step responses of the gang of six."""
+    steps = gang_steps(context.loop, context.horizon, context.points)
+    curves = {name: getattr(steps, name).copy() for name in GANG}
+    return {
+        "t": steps.t,
+        **curves,
+        "truncated_reason": steps.truncated_reason,
+        "feedforward": context.loop.feedforward,
     }

@@ -20,8 +20,13 @@ from looplab.schemas import Loop, Model, located
 
 router = APIRouter(tags=["loop"], route_class=StrictRoute)
 
-PanelName = Literal["verdict", "step", "bode", "nyquist", "root_locus", "poles", "margins", "metrics", "sensitivity"]
-DEFAULT: list[PanelName] = list(PanelName.__args__)  # type: ignore[attr-defined]
+PanelName = Literal[
+    "verdict", "step", "bode", "nyquist", "root_locus", "poles", "margins", "metrics", "sensitivity",
+    "asymptotes", "gang_steps", "root_locus_negative",
+]  # fmt: skip
+# What explains the rest more closely is computed for those who ask for it by name.
+ON_REQUEST = ("asymptotes", "gang_steps", "root_locus_negative")
+DEFAULT: list[PanelName] = [name for name in PanelName.__args__ if name not in ON_REQUEST]  # type: ignore[attr-defined]
 
 EXAMPLE: dict[str, Any] = {
     "loop": {
