@@ -26,7 +26,7 @@ class InvalidInput(EngineError):
 
 
 class ParseError(InvalidInput):
-    """A text could not be read as a transfer function; ``column`` is 1-based."""
+    """A text could not be read as a transfer function or a formula; ``column`` is 1-based."""
 
     def __init__(self, message: str, *, column: int, field: str | None = None, hint: str | None = None) -> None:
         super().__init__(f"{message} (column {column})", field=field, hint=hint)
@@ -43,6 +43,24 @@ class IllPosedLoop(EngineError):
 
 class RuleNotApplicable(EngineError):
     """A tuning rule is outside the range it was made for."""
+
+
+class NonFinite(EngineError):
+    """An equation has no finite real value at a point.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong, in one sentence.
+    t : float
+        When [time].
+    field : str
+        The equation, e.g. ``states[1].equation``.
+    """
+
+    def __init__(self, message: str, *, t: float, field: str) -> None:
+        super().__init__(message, field=field)
+        self.t = t
 
 
 class NoConvergence(EngineError):
