@@ -22,11 +22,12 @@ from looplab.engine.response import (
     simulate,
     superposition,
 )
+from looplab.engine.stability import setpoint_transfer
 from looplab.engine.state_space import StateSpaceModel, initial_state
-from looplab.engine.systems import StateSpace
+from looplab.engine.systems import StateSpace, TransferFunction
 from looplab.engine.systems.polynomial import FloatArray
 from looplab.labs.text import render_math
-from looplab.schemas import InputShape, Model, StateSpaceSystem, System, located
+from looplab.schemas import InputShape, Loop, Model, StateSpaceSystem, System, located
 
 router = APIRouter(tags=["response"], route_class=StrictRoute)
 
@@ -47,9 +48,15 @@ class Initial(Model):
 
 
 class ResponseRequest(Model):
-    """A system, an input, and where it starts."""
+    """A system or a part of a loop, an input, and where it starts."""
 
-    system: System = Field(description="Proper; x of a state space is its own, else that of a cascade of sections.")
+    system: System | None = Field(
+        default=None, description="Proper; x of a state space is its own, else that of a cascade of sections."
+    )
+    loop: Loop | None = Field(default=None, description="Plant and controller.")
+    of: Literal["closed_loop", "open_loop"] = Field(
+        default="closed_loop", description="Of a loop: T = L/(1 + L), from setpoint to output, or L = P C."
+    )
     input: InputShape
     initial: Initial | None = Field(default=None, description="Left out: at rest.")
     horizon: Annotated[float, Field(ge=1e-9, le=1e9, description="[time]")] | None = None
@@ -57,6 +64,12 @@ class ResponseRequest(Model):
     want: Annotated[list[Literal["states", "superposition", "convolution"]], Field(max_length=8)] = Field(default=[])
     slices: Annotated[int, Field(ge=1, le=500, description="Slices of the input in the convolution sum.")] = 50
     arrays: Literal["list", "f4"] = "list"
+
+    @model_validator(mode="after")
+    def _one(self) -> ResponseRequest:
+        if (self.system is None) == (self.loop is None):
+            raise ValueError("give either system or loop")
+        return self
 
 
 SECOND_ORDER = {"type": "sopdt", "K": 1, "tau": 1, "zeta": 0.3, "theta": 0.5}
@@ -77,6 +90,16 @@ EXAMPLES: dict[str, Any] = {
             "points": 301,
         }
     },
+    "a closed loop follows a ramp": {
+        "value": {
+            "loop": {
+                "plant": {"type": "expr", "text": "1/(s(s+1))"},
+                "controller": {"type": "pid", "Kc": 2},
+            },
+            "input": {"type": "ramp"},
+            "points": 51,
+        }
+    },
     "free response of a state space": {
         "value": {
             "system": {"type": "ss", "A": [[0, 1], [-2, -3]], "B": [[0], [1]], "C": [[1, 0]], "D": [[0]]},
@@ -89,12 +112,21 @@ EXAMPLES: dict[str, Any] = {
 }
 
 
-def _channel(system: Any) -> tuple[StateSpace, float]:
-    """State equations in the coordinates the caller knows, and the dead time."""
-    if isinstance(system, StateSpaceSystem):
-        return system.to_model().require_single(), system.theta
-    G = system.to_engine()
-    return StateSpaceModel.from_transfer_function(G).channel(), G.theta
+def _subject(request: ResponseRequest) -> tuple[TransferFunction, StateSpace, str]:
+    """What is asked about, its state equations in the coordinates the caller knows, and its formula."""
+    if request.loop is not None:
+        with located("loop"):
+            loop = request.loop.to_engine()
+            G = loop.open_loop if request.of == "open_loop" else setpoint_transfer(loop)
+        return G, StateSpaceModel.from_transfer_function(G).channel(), G.to_latex()
+    assert request.system is not None
+    with located("system"):
+        G = request.system.to_engine().require_proper()
+        if isinstance(request.system, StateSpaceSystem):
+            channel = request.system.to_model().require_single()
+        else:
+            channel = StateSpaceModel.from_transfer_function(G).channel()
+        return G, channel, request.system.to_latex()
 
 
 def _start(initial: Initial | None, channel: StateSpace) -> FloatArray:
@@ -126,14 +158,14 @@ def _convolution(
 
 @router.post("/response", summary="Response of one system", responses={200: {"model": ResponseAnswer}, **ERRORS})
 def response(request: Annotated[ResponseRequest, Body(openapi_examples=EXAMPLES)]) -> Response:
-    """y of one system to a step, impulse, ramp, sine, pulse or samples, exact, dead time too, from any initial state.
+    """y of one system, or of a loop from its setpoint, to a step, impulse, ramp, sine, pulse or samples.
+
+    Exact, dead time too, from any initial state.
 
     Superposition takes a staircase apart into shifted steps; convolution adds up impulse responses.
     """
-    with located("system"):
-        system = request.system.to_engine().require_proper()
-        channel, theta = _channel(request.system)
-        latex = request.system.to_latex()
+    system, channel, latex = _subject(request)
+    theta = system.theta
     with located("input"):
         signal = request.input.to_engine()
     x0 = _start(request.initial, channel)
