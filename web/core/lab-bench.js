@@ -3,6 +3,7 @@
 /** @import {LabBench, LabSlider, Settings} from "./lab-types.js" */
 /** @import {ControllerState, ControllerType, State} from "./types.js" */
 
+import { startingAnalyses } from "./analyses.js";
 import { formatNumber } from "./format.js";
 import { hasDerivative, hasIntegral } from "./loop.js";
 import { tidy } from "./scale.js";
@@ -22,7 +23,7 @@ export function stateOf({ plant, controller, horizon, sliders }) {
       alpha,
       action,
     },
-    view: { signal: "setpoint", show: [] },
+    view: { signal: "setpoint", show: [], analyses: startingAnalyses() },
   };
 }
 
