@@ -74,7 +74,7 @@ export function mountAnalysisPanel(host, store, options, start) {
     }
     if (moving) return;
     frame.note(options.note?.() ?? "");
-    frame.tell(options.describe?.() ?? "", options.legend?.() ?? []);
+    frame.tell(options.describe?.() ?? "", next ? (options.legend?.() ?? []) : []);
   }
 
   function show() {

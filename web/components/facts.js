@@ -2,7 +2,7 @@
 
 import { sentence } from "../core/format.js";
 import { formatShort } from "../core/roots.js";
-import { h } from "./dom.js";
+import { h, uniqueId } from "./dom.js";
 import { showMath } from "./mathml.js";
 
 /** @typedef {Node | string | null} Cell */
@@ -42,19 +42,28 @@ export function verdictRow(name, holds, because) {
 }
 
 /**
+ * A table that scrolls where it is too wide; its caption does not scroll away with it.
+ * @param {string} caption
+ * @param {HTMLTableElement} table
+ */
+export function captioned(caption, table) {
+  const name = h("p", { class: "table-caption", id: uniqueId("table") }, caption);
+  table.setAttribute("aria-labelledby", name.id);
+  return h("div", {}, name, h("div", { class: "table-scroll", tabindex: 0, role: "region", "aria-labelledby": name.id }, table));
+}
+
+/**
  * @param {string} caption
  * @param {string[]} header
  * @param {Cell[][]} rows  the first cell of a row heads it
  */
 export function valueTable(caption, header, rows) {
-  return h(
-    "div",
-    { class: "table-scroll", tabindex: 0, role: "region", "aria-label": caption },
+  return captioned(
+    caption,
     h(
       "table",
       { class: "values" },
-      h("caption", {}, caption),
-      header.length > 0 ? h("thead", {}, h("tr", {}, ...header.map((name) => h("th", { scope: "col" }, name)))) : null,
+      headRow(header),
       h("tbody", {}, ...rows.map(([first = null, ...rest]) => h("tr", {}, h("th", { scope: "row" }, first), ...rest.map((cell) => h("td", { class: typeof cell === "string" && cell.length > LONG ? "because" : null }, cell))))),
     ),
   );
@@ -69,6 +78,11 @@ export function matrixBlock(name, matrix) {
   const rows = (matrix ?? []).map((row) => h("tr", {}, ...row.map((value) => h("td", {}, formatShort(value)))));
   const size = `${matrix?.length ?? 0} × ${matrix?.[0]?.length ?? 0}`;
   return h("div", { class: "matrix-block" }, h("span", { class: "formula-name" }, name), h("div", { class: "table-scroll", tabindex: 0, role: "region", "aria-label": `${name}, ${size}` }, rows.length > 0 ? h("table", { class: "matrix" }, h("tbody", {}, ...rows)) : h("span", {}, "empty")));
+}
+
+/** A column without a name has no heading to be read out. @param {string[]} names */
+export function headRow(names) {
+  return h("thead", {}, h("tr", {}, ...names.map((name) => (name === "" ? h("td") : h("th", { scope: "col" }, name)))));
 }
 
 /** @param {string} title @param {...Cell} children */

@@ -16,7 +16,7 @@ export function formatComplex([re, im], digits = 4) {
   if (Math.abs(im) <= REAL * Math.abs(re) || im === 0) return formatShort(re, digits);
   const size = formatShort(Math.abs(im), digits);
   const part = Math.abs(re) <= REAL * Math.abs(im) ? "" : `${formatShort(re, digits)} `;
-  return `${part}${im < 0 ? "− " : part ? "+ " : ""}${size === "1" ? "" : size}j`;
+  return `${part}${im < 0 ? (part ? "− " : "−") : part ? "+ " : ""}${size === "1" ? "" : size}j`;
 }
 
 /** Without zeros that say nothing. @param {number | null | undefined} value @param {number} [digits] */
@@ -24,7 +24,7 @@ export function formatShort(value, digits = 4) {
   return formatNumber(value, digits).replace(/(\.\d*?)0+(?=$|×)/, "$1").replace(/\.(?=$|×)/, "");
 }
 
-/** @param {Complex[]} values @returns {Root[]} */
+/** Rightmost first: what decides stability leads. @param {Complex[]} values @returns {Root[]} */
 export function groupRoots(values) {
   /** @type {Root[]} */
   const groups = [];
@@ -35,6 +35,7 @@ export function groupRoots(values) {
     if (near) near.count += 1;
     else groups.push({ re, im: im <= REAL * size ? 0 : im, count: 1, text: "" });
   }
+  groups.sort((a, b) => (Math.abs(b.re - a.re) > REAL * Math.hypot(a.re, a.im) ? b.re - a.re : a.im - b.im));
   for (const root of groups) {
     const size = formatShort(root.im);
     const imaginary = `${size === "1" ? "" : size}j`;

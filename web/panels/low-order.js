@@ -11,7 +11,7 @@ import { formatFixed, sentence } from "../core/format.js";
 import { formatShort } from "../core/roots.js";
 import { mountAnalysisPanel } from "../components/analysis-panel.js";
 import { h } from "../components/dom.js";
-import { part } from "../components/facts.js";
+import { captioned, headRow, part } from "../components/facts.js";
 import { showMath } from "../components/mathml.js";
 import "../components/segmented-control.js";
 import { toast } from "../components/status-toast.js";
@@ -34,6 +34,11 @@ const CLASSES = {
 /** @param {State} state */
 function requestOf({ plant }) {
   return { plant, points: 400, arrays: "f4" };
+}
+
+/** @param {LowOrderModel} model */
+function nameOf({ method, name }) {
+  return SIGNALS[method]?.label ?? name;
 }
 
 /** @param {LowOrderModel} model @returns {System | null} */
@@ -67,15 +72,13 @@ export function mount(host, store, api) {
 
   /** @param {LowOrderModel} model */
   function row(model) {
-    const name = h("span", { title: model.source }, SIGNALS[model.method]?.label ?? model.name);
-    if (!model.valid) return h("tr", {}, h("th", { scope: "row" }, name), h("td", { colspan: 6, class: "because" }, sentence(model.reason)));
     const values = shown() === "FOPDT" ? [model.K, model.tau, model.theta] : [model.K, model.tau, model.zeta, model.theta];
     const formula = h("span", {});
     showMath(formula, model.mathml);
     return h(
       "tr",
       {},
-      h("th", { scope: "row" }, name),
+      h("th", { scope: "row" }, h("span", { title: model.source }, nameOf(model))),
       h("td", {}, formula),
       ...values.map((value) => h("td", {}, formatShort(value))),
       h("td", {}, `${formatFixed(model.max_deviation_pct, 1)}\u202f%`),
@@ -88,12 +91,13 @@ export function mount(host, store, api) {
     type.value = shown();
     const header = ["Method", "Model", "K", `τ [${unit}]`, ...(shown() === "FOPDT" ? [] : ["ζ"]), `θ [${unit}]`, "Largest deviation", ""];
     const caption = `${shown() === "FOPDT" ? "First" : "Second"}-order models with dead time; deviation from the true step response, in per cent of K`;
-    const table = h(
-      "div",
-      { class: "table-scroll", tabindex: 0, role: "region", "aria-label": caption },
-      h("table", { class: "values models" }, h("caption", {}, caption), h("thead", {}, h("tr", {}, ...header.map((name) => h("th", { scope: "col" }, name)))), h("tbody", {}, ...answer.models.filter((model) => model.type === shown()).map(row))),
+    const models = answer.models.filter((model) => model.type === shown());
+    const table = captioned(
+      caption,
+      h("table", { class: "values models" }, headRow(header), h("tbody", {}, ...models.filter(({ valid }) => valid).map(row))),
     );
-    words.replaceChildren(part("Models", answer.reason ? h("p", { class: "finding" }, sentence(answer.reason)) : table), character(answer.character, answer.plant.order, unit));
+    const refused = models.filter(({ valid }) => !valid).map((model) => h("p", { class: "finding" }, h("strong", {}, `No ${nameOf(model)}: `), sentence(model.reason)));
+    words.replaceChildren(part("Models", ...(answer.reason ? [h("p", { class: "finding" }, sentence(answer.reason))] : [table, ...refused])), character(answer.character, answer.plant.order, unit));
   }
 
   const panel = mountAnalysisPanel(

@@ -121,7 +121,7 @@ export function mount(host, store, api) {
     const answer = /** @type {ResponseAnswer} */ (analysis.answer);
     formula.replaceChildren(formulaBlock(SUBJECT[view().of], answer.system));
     const { final_value, reasons, truncated_at, truncated_reason, superposition, convolution } = answer;
-    setText(ends, final_value === null ? sentence(reasons["final_value"] ?? "no final value") : `y comes to rest at ${formatShort(final_value, 5)}.`);
+    setText(ends, final_value === null ? `No final value. ${sentence(reasons["final_value"])}` : `y comes to rest at ${formatShort(final_value, 5)}.`);
     setText(cut, truncated_at === null ? "" : `Cut off at t = ${formatWithUnit(truncated_at, unit)}: ${truncated_reason}.`);
     setText(impulses, answer.impulses.map(({ t, area }) => `An impulse of area ${formatShort(area)} passes straight to y at t = ${formatShort(t)}; no sample can show it.`).join(" "));
     const { terms } = termsOf(answer);
@@ -147,7 +147,7 @@ export function mount(host, store, api) {
       figure: createFigure,
       subject: () => JSON.stringify([store.get().plant, view()]),
       render,
-      draw: (theme, held) => (analysis?.answer ? responsePlot({ answer: analysis.answer, timeUnit: unit }, theme, held) : null),
+      draw: (theme, held) => (analysis?.answer ? responsePlot({ answer: analysis.answer, staircase: isStaircase(view().input), timeUnit: unit }, theme, held) : null),
       legend() {
         const { superposition = null, convolution = null } = analysis?.answer ?? {};
         const names = superposition || convolution ? ["u", "y", "term", "sum"] : ["u", "y"];

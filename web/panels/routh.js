@@ -12,7 +12,7 @@ import { loopOf } from "../core/loop.js";
 import { formatShort } from "../core/roots.js";
 import { mountAnalysisPanel } from "../components/analysis-panel.js";
 import { h } from "../components/dom.js";
-import { part, valueTable, verdictRow } from "../components/facts.js";
+import { captioned, part, valueTable, verdictRow } from "../components/facts.js";
 import { createListField } from "../components/list-field.js";
 import "../components/segmented-control.js";
 import { createFigure } from "../plots/figure.js";
@@ -172,8 +172,7 @@ function arrayTable(rows) {
     const kind = { given: "", computed: "", multiplied: "times 1 − s²", auxiliary: "auxiliary" }[row.kind];
     return h("tr", { class: `routh-${row.kind}` }, h("th", { scope: "row" }, powerOf(row)), ...cells, h("td", { class: "routh-mark" }, [changes ? "sign change" : "", kind].filter(Boolean).join(", ")));
   });
-  const caption = "Routh array; the signs of the first column count";
-  return h("div", { class: "table-scroll", tabindex: 0, role: "region", "aria-label": caption }, h("table", { class: "values routh-array" }, h("caption", {}, caption), h("tbody", {}, ...body)));
+  return captioned("The signs of the first column count", h("table", { class: "values routh-array" }, h("tbody", {}, ...body)));
 }
 
 /** @param {GainRange} range @param {string} name */

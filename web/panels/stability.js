@@ -80,7 +80,6 @@ function notions(open, closed) {
   const both = [open, closed];
   /** @param {string} name @param {(answer: StabilityAnswer) => boolean | null} holds */
   const row = (name, holds) => [name, ...both.map((answer) => (answer ? yesNo(holds(answer)) : ""))];
-  const counter = open.bibo?.unbounded;
   return part(
     "Notions",
     valueTable("Which notion of stability holds", ["", "Plant", "Closed loop"], [
@@ -93,7 +92,6 @@ function notions(open, closed) {
     h("p", { class: "finding" }, h("strong", {}, "Plant: "), sentence(open.because)),
     closed ? h("p", { class: "finding" }, h("strong", {}, "Closed loop: "), sentence(closed.because)) : null,
     open.bibo ? h("p", { class: "finding" }, h("strong", {}, "BIBO, plant: "), sentence(open.bibo.because)) : null,
-    counter ? h("p", { class: "finding" }, `Proof by ${counter.name}: u(t) = ${counter.u} is bounded, y(t) grows like ${counter.output}.`) : null,
     open.bibo && open.bibo.cancelled.length > 0 ? h("p", { class: "finding warn" }, `Input and output do not see the pole ${rootsText(open.bibo.cancelled)}.`) : null,
   );
 }
@@ -108,9 +106,11 @@ function jordan({ axis_modes }) {
     String(mode.geometric),
     String(mode.largest_block),
     mode.geometric === mode.algebraic ? "bounded" : `grows like t${mode.largest_block > 2 ? `^${mode.largest_block - 1}` : ""}`,
-    mode.singular_values.length > 0 ? `${mode.singular_values.map((value) => formatNumber(value, 2)).join(", ")}; zero below ${formatNumber(mode.threshold, 2)}` : "from the factors",
   ]);
-  return part("Imaginary axis", valueTable("Jordan structure of the plant's eigenvalues on the axis", ["Eigenvalue", "Multiplicity", "Eigenvectors", "Largest block", "State", "Singular values that decide"], rows));
+  const decided = axis_modes
+    .filter(({ singular_values }) => singular_values.length > 0)
+    .map(({ eigenvalue, singular_values, threshold }) => h("p", { class: "finding" }, `Singular values of A − λI at λ = ${rootsText([eigenvalue])}: ${singular_values.map((value) => formatNumber(value, 2)).join(", ")}; below ${formatNumber(threshold, 2)} they count as zero, and each zero is an eigenvector.`));
+  return part("Imaginary axis", valueTable("Jordan structure of the plant's eigenvalues on the axis", ["Eigenvalue", "Multiplicity", "Eigenvectors", "Largest block", "State"], rows), ...decided);
 }
 
 /** @param {NonNullable<StabilityAnswer["internal"]>} internal */

@@ -15,6 +15,8 @@ import { h, setText } from "../components/dom.js";
 import { formulaBlock, matrixBlock, part, valueTable, yesNo } from "../components/facts.js";
 import "../components/number-field.js";
 
+const ROUNDING = 1e-14;
+
 /** @param {State} state */
 function requestOf({ plant, view }) {
   return { system: plant, cancel_tolerance: view.analyses.cancel_tolerance };
@@ -105,12 +107,18 @@ function modes({ modes: list, minimal: whole }) {
   return part("Modes", valueTable("Each mode by the Popov–Belevitch–Hautus test, with the singular value that decides", ["Pole", "Stable", "Controllable", "σ [A − pI, B]", "Observable", "σ [A − pI; C]"], rows), h("p", { class: hidden.length > 0 ? "finding warn" : "finding" }, said));
 }
 
+/** A Gramian is solved for: what is left beside its largest entry is rounding. @param {number[][]} matrix */
+function withoutRounding(matrix) {
+  const least = ROUNDING * Math.max(...matrix.flat().map(Math.abs));
+  return matrix.map((row) => row.map((value) => (Math.abs(value) < least ? 0 : value)));
+}
+
 /** @param {StateSpaceAnswer} found */
 function gramians({ gramians: { controllability, observability, hankel_singular_values, reason } }) {
   if (!controllability || !observability) return part("Gramians", h("p", { class: "finding" }, sentence(reason ?? "there are none")));
   return part(
     "Gramians",
-    h("div", { class: "matrices" }, matrixBlock("Controllability", controllability), matrixBlock("Observability", observability)),
+    h("div", { class: "matrices" }, matrixBlock("Controllability", withoutRounding(controllability)), matrixBlock("Observability", withoutRounding(observability))),
     h("p", { class: "finding" }, `Hankel singular values: ${(hankel_singular_values ?? []).map((value) => formatNumber(value, 3)).join(", ") || "none"}. A small one is a state that input and output hardly share.`),
   );
 }

@@ -47,12 +47,12 @@ export function termsOf({ t, superposition, convolution }) {
 }
 
 /**
- * @param {{answer: ResponseAnswer, timeUnit: string}} input
+ * @param {{answer: ResponseAnswer, staircase: boolean, timeUnit: string}} input  a staircase has upright steps
  * @param {Theme} theme
  * @param {Held} held
  * @returns {Figure}
  */
-export function responsePlot({ answer, timeUnit }, theme, held) {
+export function responsePlot({ answer, staircase, timeUnit }, theme, held) {
   const { t, u, horizon, truncated_at } = answer;
   const unit = escapePlotly(timeUnit);
   // A sum from rest stands beside the response from rest.
@@ -74,7 +74,7 @@ export function responsePlot({ answer, timeUnit }, theme, held) {
 
   const traces = [
     ...terms.map((values) => line("term", values, "y", { hoverinfo: "skip", hovertemplate: "" })),
-    line("u", u, "y2", answer.impulses.length > 0 ? { opacity: 0.6 } : {}),
+    line("u", u, "y2", staircase ? { line: { ...lineOf("u", theme), shape: "hv" } } : {}),
     line("y", y, "y"),
     ...(total ? [line("sum", total, "y")] : []),
   ];

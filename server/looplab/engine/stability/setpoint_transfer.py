@@ -37,7 +37,7 @@ def setpoint_transfer(loop: FeedbackLoop) -> TransferFunction:
         raise InvalidInput(
             "with dead time in the loop the closed loop is no rational function",
             field="plant.theta",
-            hint="its exact answers to steps are those of POST /loop; plant and open loop take any input",
+            hint="the step responses of the loop are exact; plant and open loop take any input",
         )
     if loop.feedforward:
         raise InvalidInput("a setpoint weight is not part of T", field="controller.beta", hint="use beta 1")
