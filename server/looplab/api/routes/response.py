@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -14,6 +15,7 @@ from looplab.api.docs import ERRORS
 from looplab.api.encode import json_response
 from looplab.api.strict import StrictRoute
 from looplab.engine.errors import InvalidInput
+from looplab.engine.loop import FeedbackLoop
 from looplab.engine.response import (
     InputSignal,
     convolution,
@@ -22,10 +24,10 @@ from looplab.engine.response import (
     simulate,
     superposition,
 )
-from looplab.engine.stability import setpoint_transfer
+from looplab.engine.stability import closed_loop_poles, setpoint_transfer
 from looplab.engine.state_space import StateSpaceModel, initial_state
 from looplab.engine.systems import StateSpace, TransferFunction
-from looplab.engine.systems.polynomial import FloatArray
+from looplab.engine.systems.polynomial import ComplexArray, FloatArray
 from looplab.labs.text import render_math
 from looplab.schemas import InputShape, Loop, Model, StateSpaceSystem, System, located
 
@@ -112,24 +114,62 @@ EXAMPLES: dict[str, Any] = {
 }
 
 
-def _subject(request: ResponseRequest) -> tuple[TransferFunction, StateSpace, str]:
-    """What is asked about, its state equations in the coordinates the caller knows, and its formula."""
+@dataclass(frozen=True)
+class _Subject:
+    """What is asked about: what is simulated, what tells how long and where to, and its formula."""
+
+    source: StateSpace | FeedbackLoop
+    theta: float
+    order: int
+    poles: ComplexArray
+    dc_gain: float
+    text: str
+    latex: str
+
+    @classmethod
+    def of(cls, G: TransferFunction, latex: str | None = None, channel: StateSpace | None = None) -> _Subject:
+        source = channel or StateSpaceModel.from_transfer_function(G).channel()
+        return cls(source, G.theta, G.order, G.poles, G.dc_gain, G.to_text(), latex or G.to_latex())
+
+
+def _subject(request: ResponseRequest) -> _Subject:
     if request.loop is not None:
         with located("loop"):
             loop = request.loop.to_engine()
-            G = loop.open_loop if request.of == "open_loop" else setpoint_transfer(loop)
-        return G, StateSpaceModel.from_transfer_function(G).channel(), G.to_latex()
+            if request.of == "open_loop":
+                return _Subject.of(loop.open_loop)
+            if loop.theta and loop.open_loop.gain:
+                return _delayed(loop)
+            return _Subject.of(setpoint_transfer(loop))
     assert request.system is not None
     with located("system"):
         G = request.system.to_engine().require_proper()
+        channel = None
         if isinstance(request.system, StateSpaceSystem):
             channel = request.system.to_model().require_single()
-        else:
-            channel = StateSpaceModel.from_transfer_function(G).channel()
-        return G, channel, request.system.to_latex()
+        return _Subject.of(G, request.system.to_latex(), channel)
 
 
-def _start(initial: Initial | None, channel: StateSpace) -> FloatArray:
+def _delayed(loop: FeedbackLoop) -> _Subject:
+    """A loop with dead time has no transfer function that is a fraction of polynomials: it is written with its L."""
+    if loop.feedforward:
+        raise InvalidInput("a setpoint weight is not part of T", field="controller.beta", hint="use beta 1")
+    L = loop.open_loop
+    gain = 1.0 if L.origin_order > 0 else L.dc_gain / (1.0 + L.dc_gain) if L.dc_gain != -1.0 else 0.0
+    latex = rf"\frac{{L(s)}}{{1 + L(s)}}, \quad L(s) = {L.to_latex()}"
+    poles = closed_loop_poles(loop).poles
+    return _Subject(loop, loop.theta, L.order, poles, gain, f"L/(1 + L) with L = {L.to_text()}", latex)
+
+
+def _start(initial: Initial | None, channel: StateSpace | FeedbackLoop) -> FloatArray:
+    if isinstance(channel, FeedbackLoop):
+        if initial is not None:
+            raise InvalidInput(
+                "a loop with dead time starts from rest: what is on its way is part of its state",
+                field="initial",
+                hint="leave the initial state out, or look at the plant alone",
+            )
+        return np.zeros(0)
     if initial is None:
         return np.zeros(channel.B.size)
     if initial.y is not None:
@@ -142,7 +182,7 @@ def _start(initial: Initial | None, channel: StateSpace) -> FloatArray:
 
 
 def _superposition(
-    channel: StateSpace, theta: float, signal: InputSignal, x0: FloatArray, at: tuple[float, int]
+    channel: StateSpace | FeedbackLoop, theta: float, signal: InputSignal, x0: FloatArray, at: tuple[float, int]
 ) -> dict[str, Any]:
     found = superposition(channel, signal, *at, x0, theta)
     terms = [{"amplitude": term.amplitude, "start": term.start, "y": term.y} for term in found.terms]
@@ -150,7 +190,7 @@ def _superposition(
 
 
 def _convolution(
-    channel: StateSpace, theta: float, signal: InputSignal, slices: int, at: tuple[float, int]
+    channel: StateSpace | FeedbackLoop, theta: float, signal: InputSignal, slices: int, at: tuple[float, int]
 ) -> dict[str, Any]:
     found = convolution(channel, signal, *at, slices, theta)
     return {name: getattr(found, name) for name in ("times", "weights", "h", "total", "exact", "error")}
@@ -160,39 +200,42 @@ def _convolution(
 def response(request: Annotated[ResponseRequest, Body(openapi_examples=EXAMPLES)]) -> Response:
     """y of one system, or of a loop from its setpoint, to a step, impulse, ramp, sine, pulse or samples.
 
-    Exact, dead time too, from any initial state.
+    Exact, dead time too, inside a loop as well, from any initial state (a loop with dead time from rest).
 
     Superposition takes a staircase apart into shifted steps; convolution adds up impulse responses.
     """
-    system, channel, latex = _subject(request)
-    theta = system.theta
+    subject = _subject(request)
+    source, theta = subject.source, subject.theta
     with located("input"):
         signal = request.input.to_engine()
-    x0 = _start(request.initial, channel)
-    horizon = request.horizon or response_horizon(system.poles, signal, theta)
+    x0 = _start(request.initial, source)
+    horizon = request.horizon or response_horizon(subject.poles, signal, theta)
     at = (horizon, request.points)
-    found = simulate(channel, signal, *at, x0, theta)
-    final = final_value(system.poles, system.dc_gain, signal)
-    text = {"text": system.to_text(), "latex": latex, "mathml": render_math(latex)}
+    found = simulate(source, signal, *at, x0, theta)
+    final = final_value(subject.poles, subject.dc_gain, signal)
+    text = {"text": subject.text, "latex": subject.latex, "mathml": render_math(subject.latex)}
+    reasons = {} if final.reason is None else {"final_value": final.reason}
+    if isinstance(source, FeedbackLoop) and "states" in request.want:
+        reasons["states"] = "with dead time what is on its way is part of the state"
     sums: dict[str, Any] = {"superposition": None, "convolution": None}
     if "superposition" in request.want:
-        sums["superposition"] = _superposition(channel, theta, signal, x0, at)
+        sums["superposition"] = _superposition(source, theta, signal, x0, at)
     if "convolution" in request.want:
-        sums["convolution"] = _convolution(channel, theta, signal, request.slices, at)
+        sums["convolution"] = _convolution(source, theta, signal, request.slices, at)
     answer = {
         "time_unit": "s",
-        "system": {**text, "order": system.order, "theta": theta},
+        "system": {**text, "order": subject.order, "theta": theta},
         "horizon": horizon,
         "t": found.t,
         "u": found.u,
         "y": found.y,
-        "states": list(found.x.T.copy()) if "states" in request.want else None,
+        "states": list(found.x.T.copy()) if "states" in request.want and "states" not in reasons else None,
         "initial_state": x0.tolist(),
         "impulses": [{"t": t, "area": area} for t, area in found.impulses],
         "final_value": final.value,
         "truncated_at": found.truncated_at,
         "truncated_reason": found.truncated_reason,
         **sums,
-        "reasons": {} if final.reason is None else {"final_value": final.reason},
+        "reasons": reasons,
     }
     return json_response(answer, request.arrays)
