@@ -25,6 +25,7 @@ import { onThemeChange, readTheme } from "./theme.js";
  * @property {() => string} [subject]  what the axes belong to: another one has axes of its own
  * @property {() => void} render  puts what was found into the words
  * @property {(theme: Theme, held: {ranges: Ranges, moving: boolean}) => Figure | null} [draw]
+ * @property {() => boolean} [awaited]  the plot is still to come: its room is kept
  * @property {() => Table | null} table
  * @property {() => string} [describe]
  * @property {() => LegendItem[]} [legend]
@@ -66,8 +67,9 @@ export function mountAnalysisPanel(host, store, options, start) {
       drawnFor = subject;
     }
     const next = options.draw?.(theme, { ranges, moving }) ?? null;
-    plotPlace.hidden = next === null;
-    content.classList.toggle("no-plot", next === null);
+    const room = next !== null || (options.awaited?.() ?? false);
+    plotPlace.hidden = !room;
+    content.classList.toggle("no-plot", !room);
     if (next) {
       ranges = next.ranges;
       frame.show(next, moving);

@@ -126,6 +126,7 @@ export function mount(host, store, api) {
     },
     (onChange) => [(analysis = createAnalysis(store, { request: requestOf, send: (request) => api.analyse("approximate", request) }, onChange))],
   );
+  type.value = shown();
   const stop = store.subscribe((_, { view }) => {
     if (view) panel.redraw();
   });

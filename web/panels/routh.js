@@ -117,6 +117,7 @@ export function mount(host, store, api) {
       figure: createFigure,
       subject: () => JSON.stringify([store.get().plant, cutsAround(store.get().controller.tau_I)[0]]),
       live: true,
+      awaited: () => regionRequest(store.get()) !== null && !region?.error,
       render,
       draw(theme, held) {
         const { controller } = store.get();
@@ -190,7 +191,7 @@ function ends({ low, high, low_reason, high_reason }) {
 /** @param {RouthAnswer} answer @param {RouthAnswer | null} region @returns {Table} */
 function tableOf({ array }, region) {
   const cuts = region?.pi_region?.cuts;
-  if (cuts) return { header: ["tau_I", "Kc from", "Kc to"], rows: cuts.flatMap(({ tau_I, gain_ranges }) => gain_ranges.map(({ low, high }) => [tau_I, low, high])) };
+  if (cuts) return { header: ["tau_I", "lowest Kc", "highest Kc"], rows: cuts.flatMap(({ tau_I, gain_ranges }) => gain_ranges.map(({ low, high }) => [tau_I, low, high])) };
   const columns = Array.from({ length: Math.max(0, ...(array ?? []).map(({ entries }) => entries.length)) }, (_, i) => i);
   return { header: ["row", ...columns.map((i) => `column ${i + 1}`)], rows: (array ?? []).map(({ label, entries }) => [label].concat(/** @type {any} */ (columns.map((i) => entries[i] ?? null)))) };
 }
