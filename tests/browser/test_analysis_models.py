@@ -56,7 +56,7 @@ def test_matrices_are_typed_as_the_plant(page: Page):
     for name, text in (("B n × 1", "0\n1"), ("C 1 × n", "1 0")):
         card.get_by_label(name).fill(text)
         card.get_by_label(name).blur()
-    expect(card.get_by_role("alert").last).to_be_empty()
+    expect(card.locator(".matrix-editor .field-message")).to_be_empty()
     expect(page.locator("#panel-state_space")).to_contain_text("Eigenvalues: −1, −2")
     expect(page).to_have_url(re.compile(r"plant=ss&A=0,1;-2,-3&B=0;1&C=1,0&D=0"))
     page.keyboard.press("Control+z")
@@ -88,6 +88,7 @@ def test_models_of_three_lags(page: Page):
     panel.get_by_role("button", name=re.compile("^Use the SOPDT model by half rule")).click()
     expect(page.get_by_role("slider", name="damping zeta")).to_be_visible()
     expect(panel).to_contain_text("Second order, overdamped.")
+    expect(panel.get_by_role("heading", name="Low order")).to_be_focused()
 
 
 def test_the_character_of_a_second_order_plant(page: Page):

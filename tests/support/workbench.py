@@ -54,7 +54,7 @@ def open_analyses(page: Page, *names: str, query: str = "") -> None:
     page.add_init_script(COUNT_DRAWINGS)
     page.goto(f"/workbench?show={','.join(names)}" + (f"&{query}" if query else ""))
     for name in names:
-        expect(page.locator(f"#panel-{name} .analysis-content")).to_be_visible()
+        expect(page.locator(f"#panel-{name} .analysis-content")).to_be_visible(timeout=20_000)
     expect(verdict(page)).to_be_visible()
 
 

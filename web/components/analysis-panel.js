@@ -88,8 +88,15 @@ export function mountAnalysisPanel(host, store, options, start) {
     frame.root.classList.toggle("stale", Boolean(main?.error));
     content.hidden = !main?.answer;
     if (!main?.answer) return;
+    const focused = content.contains(document.activeElement);
     options.render();
     draw(false);
+    // What had the focus may be gone, a used-up button say: it stays with the panel.
+    if (focused && !content.contains(document.activeElement)) {
+      const heading = frame.root.querySelector("h2");
+      heading?.setAttribute("tabindex", "-1");
+      heading?.focus({ preventScroll: true });
+    }
   }
 
   /** @type {Analysis<any>[]} */
