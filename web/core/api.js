@@ -69,6 +69,8 @@ export function createApi({ base = "/api/v1", fetch = globalThis.fetch.bind(glob
     rootLocus: (request) => call("/root-locus", request),
     /** @param {{plant?: System, model?: object, ultimate?: object, rules?: string[], types?: string[]}} request @returns {Promise<TuneAnswer>} */
     tune: (request) => call("/tune", request),
+    /** One analysis. @param {"response" | "laplace" | "routh" | "stability" | "state-space" | "approximate"} route @param {object} request @returns {Promise<any>} */
+    analyse: async (route, request) => decodeArrays(await call(`/${route}`, request)),
     /** @returns {Promise<{labs: LabSummary[]}>} */
     labs: () => call("/labs"),
     /** @param {string} id @returns {Promise<any>} */

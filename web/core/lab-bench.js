@@ -3,6 +3,7 @@
 /** @import {LabBench, LabSlider, Settings} from "./lab-types.js" */
 /** @import {ControllerState, ControllerType, State} from "./types.js" */
 
+import { startingAnalyses } from "./analyses.js";
 import { formatNumber } from "./format.js";
 import { hasDerivative, hasIntegral } from "./loop.js";
 import { tidy } from "./scale.js";
@@ -23,7 +24,7 @@ export function stateOf({ plant, controller, horizon, sliders }) {
       beta: 1,
       action,
     },
-    view: { signal: "setpoint", show: [] },
+    view: { signal: "setpoint", show: [], analyses: startingAnalyses() },
   };
 }
 

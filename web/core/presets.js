@@ -2,6 +2,8 @@
 
 /** @import {ControllerState, State, System} from "./types.js" */
 
+import { startingAnalyses } from "./analyses.js";
+
 /**
  * @typedef {object} Preset
  * @property {string} id
@@ -132,6 +134,6 @@ export function defaultState() {
     plant: expr("1/(s+1)^3"),
     controller: { ...DEFAULT_CONTROLLER },
     horizon: null,
-    view: { signal: "setpoint", show: [] },
+    view: { signal: "setpoint", show: [], analyses: startingAnalyses() },
   };
 }

@@ -89,6 +89,11 @@ export function createStore(initial) {
       tell({ moving: false, design: false, view: true });
     },
 
+    /** @param {Partial<View["analyses"]>} patch */
+    setAnalyses(patch) {
+      this.setView({ analyses: { ...state.view.analyses, ...patch } });
+    },
+
     /** @param {(state: State, change: Change) => void} listener @returns {() => void} */
     subscribe(listener) {
       listeners.add(listener);

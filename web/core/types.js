@@ -6,7 +6,8 @@
 /** @typedef {{type: "expr", text: string}} ExprSystem */
 /** @typedef {{type: "fopdt", K: number, tau: number, theta: number}} FopdtSystem */
 /** @typedef {{type: "sopdt", K: number, tau: number, zeta: number, theta: number}} SopdtSystem */
-/** @typedef {ExprSystem | FopdtSystem | SopdtSystem} System */
+/** @typedef {{type: "ss", A: number[][], B: number[][], C: number[][], D: number[][], theta: number}} SsSystem */
+/** @typedef {ExprSystem | FopdtSystem | SopdtSystem | SsSystem} System */
 
 /** @typedef {"P" | "PI" | "PD" | "PID"} ControllerType */
 /** @typedef {"ideal" | "series" | "parallel"} ControllerForm */
@@ -33,11 +34,35 @@
  * @property {number | null} horizon  time axis of the step responses; null lets the server choose
  */
 
+/** @typedef {{type: string} & Record<string, any>} InputShape  an input signal as the API has it */
+
+/**
+ * @typedef {object} ResponseView
+ * @property {"plant" | "open_loop" | "closed_loop"} of
+ * @property {InputShape} input
+ * @property {{y?: number[], x?: number[]} | null} initial  null is at rest
+ * @property {"superposition" | "convolution" | null} sum
+ * @property {number} slices  of the input, in the convolution sum
+ */
+
+/** @typedef {{a: number[], b: number[], initial: number[]}} LinearOde */
+
+/**
+ * What the analyses are asked beside the loop.
+ * @typedef {object} AnalysesView
+ * @property {ResponseView} response
+ * @property {{input: InputShape | null, ode: LinearOde | null}} laplace  without ode it is the plant
+ * @property {number[] | null} polynomial  of the Routh array; null takes the loop's
+ * @property {"FOPDT" | "SOPDT"} model_type  which low-order models are drawn
+ * @property {number} cancel_tolerance  up to this distance a zero cancels a pole
+ */
+
 /**
  * How the student looks at it: travels in the URL, but is no step of undo.
  * @typedef {object} View
  * @property {"setpoint" | "load"} signal
  * @property {string[]} show  plots on the stage, in order
+ * @property {AnalysesView} analyses
  */
 
 /** @typedef {Design & {view: View}} State */

@@ -2,10 +2,13 @@
 
 /** @import {ControllerState, State, System, View} from "./types.js" */
 
+import { analysesFromQuery, analysesToQuery } from "./analyses.js";
 import { toInput } from "./format.js";
+import { matrixLine, parseMatrix } from "./lists.js";
 
 const MAX_TEXT = 500;
 const TYPES = ["P", "PI", "PD", "PID"];
+const MATRICES = /** @type {const} */ (["A", "B", "C", "D"]);
 const FORMS = ["ideal", "series", "parallel"];
 
 /** @param {State} state @returns {string} without the leading "?" */
@@ -14,6 +17,7 @@ export function toQuery({ plant, controller, horizon, view }) {
   if (plant.type === "expr") query.set("plant", plant.text);
   else {
     query.set("plant", plant.type);
+    if (plant.type === "ss") for (const name of MATRICES) query.set(name, matrixLine(plant[name]));
     for (const [name, value] of Object.entries(plant)) if (typeof value === "number") query.set(name, toInput(value));
   }
   query.set("type", controller.type);
@@ -27,8 +31,9 @@ export function toQuery({ plant, controller, horizon, view }) {
   if (horizon !== null) query.set("horizon", toInput(horizon));
   if (view.signal !== "setpoint") query.set("signal", view.signal);
   if (view.show.length > 0) query.set("show", view.show.join(","));
+  analysesToQuery(query, view.analyses);
   // Commas and slashes are legal in a query; escaped they make the link unreadable.
-  return query.toString().replace(/%2C/g, ",").replace(/%2F/g, "/").replace(/%28/g, "(").replace(/%29/g, ")").replace(/%5E/g, "^");
+  return query.toString().replace(/%2C/g, ",").replace(/%3B/g, ";").replace(/%2F/g, "/").replace(/%28/g, "(").replace(/%29/g, ")").replace(/%5E/g, "^");
 }
 
 /**
@@ -67,6 +72,7 @@ export function fromQuery(text, fallback, plots) {
   const view = {
     signal: choice("signal", ["setpoint", "load"], fallback.view.signal),
     show: query.has("show") ? [...new Set((query.get("show") ?? "").split(","))].filter((name) => plots.includes(name)) : fallback.view.show,
+    analyses: analysesFromQuery(query),
   };
   const horizon = query.has("horizon") ? number("horizon", 0) || null : fallback.horizon;
   return { plant: plantOf(query, number) ?? fallback.plant, controller, horizon, view };
@@ -85,6 +91,10 @@ function plantOf(query, number) {
   if (text === "fopdt") return { type: "fopdt", K: number("K", 1, any), tau: number("tau", 1), theta: number("theta", 0, notNegative) };
   if (text === "sopdt") {
     return { type: "sopdt", K: number("K", 1, any), tau: number("tau", 1), zeta: number("zeta", 1, notNegative), theta: number("theta", 0, notNegative) };
+  }
+  if (text === "ss") {
+    const [A, B, C, D] = MATRICES.map((name) => parseMatrix(query.get(name) ?? ""));
+    return A && B && C && D ? { type: "ss", A, B, C, D, theta: number("theta", 0, notNegative) } : null;
   }
   return { type: "expr", text };
 }

@@ -87,7 +87,7 @@ export function mount(host, store, _api) {
     const rows = [...controllerRows(controller)];
     fill(lines.controller, rows, 71);
     const about = answers.plant;
-    const words = plant.type === "expr" ? plant.text : plant.type === "fopdt" ? "lag, delay" : "second order";
+    const words = plant.type === "expr" ? plant.text : plant.type === "fopdt" ? "lag, delay" : plant.type === "ss" ? "matrices" : "second order";
     const order = about?.order === undefined ? "" : `order ${about.order}`;
     const delay = about?.theta ? `θ ${formatNumber(about.theta)}` : "";
     const title = "plant P";

@@ -11,6 +11,7 @@ import { h, set, setText } from "../components/dom.js";
 import "../components/gain-slider.js";
 import { icon } from "../components/icons.js";
 import { showMath } from "../components/mathml.js";
+import { createMatrixEditor } from "../components/matrix-editor.js";
 import { attachMenu } from "../components/menu.js";
 import "../components/segmented-control.js";
 import { toast } from "../components/status-toast.js";
@@ -33,8 +34,13 @@ const MODEL = {
   ],
 };
 
-/** @type {Record<"fopdt" | "sopdt", System>} */
-const START = { fopdt: { type: "fopdt", K: 1, tau: 3, theta: 1 }, sopdt: { type: "sopdt", K: 1, tau: 1, zeta: 0.5, theta: 0 } };
+/** @type {Record<"fopdt" | "sopdt" | "ss", System>} */
+const START = { fopdt: { type: "fopdt", K: 1, tau: 3, theta: 1 }, sopdt: { type: "sopdt", K: 1, tau: 1, zeta: 0.5, theta: 0 }, ss: { type: "ss", A: [[0, 1], [-2, -3]], B: [[0], [1]], C: [[1, 0]], D: [[0]], theta: 0 } };
+
+/** @param {System} plant */
+function deadTime(plant) {
+  return "theta" in plant ? plant.theta : 0;
+}
 
 /**
  * @param {HTMLElement} host
@@ -52,6 +58,7 @@ export function mount(host, store, _api, { open = true } = {}) {
     { value: "expr", label: "Expression", title: "Any transfer function in s" },
     { value: "fopdt", label: "1st order", title: "First order with dead time" },
     { value: "sopdt", label: "2nd order", title: "Second order with dead time" },
+    { value: "ss", label: "Matrices", title: "State equations x′ = A x + B u, y = C x + D u" },
   ];
 
   const input = h("input", { type: "text", id: "plant-text", class: "expression", maxlength: MAX_TEXT, autocomplete: "off", autocapitalize: "off", spellcheck: "false", "aria-describedby": "plant-error plant-hint" });
@@ -60,8 +67,9 @@ export function mount(host, store, _api, { open = true } = {}) {
   const hint = h("p", { class: "field-hint", id: "plant-hint" }, "Like (s+3)/(s^2 (s+2)) exp(-0.1 s)");
   const expression = h("div", { class: "expression-field" }, h("label", { for: "plant-text" }, h("i", {}, "P"), "(s) ="), h("div", { class: "expression-box" }, input, caret), error, hint);
   const model = h("div", { class: "knobs" });
+  const matrices = createMatrixEditor({ onMatrices: (typedIn) => store.set({ plant: { type: "ss", theta: deadTime(store.get().plant), ...typedIn } }) });
   const presets = h("button", { type: "button", class: "button", "aria-label": "Pick a plant" }, "Pick", icon("chevron"));
-  card.body.append(math, h("div", { class: "row spread" }, kind, h("span", { class: "menu-holder" }, presets)), expression, model);
+  card.body.append(h("div", { class: "plant-head" }, math, h("span", { class: "menu-holder" }, presets)), kind, expression, model, matrices.root);
 
   /** @type {Map<string, import("../components/gain-slider.js").GainSlider>} */
   const knobs = new Map();
@@ -90,7 +98,7 @@ export function mount(host, store, _api, { open = true } = {}) {
     const { plant } = store.get();
     if (kind.value === plant.type) return;
     if (kind.value === "expr") store.set({ plant: { type: "expr", text: answers.plant?.text || "1/(s+1)" } });
-    else store.set({ plant: START[kind.value === "fopdt" ? "fopdt" : "sopdt"] });
+    else store.set({ plant: START[/** @type {"fopdt" | "sopdt" | "ss"} */ (kind.value)] });
   });
 
   function commit() {
@@ -133,13 +141,17 @@ export function mount(host, store, _api, { open = true } = {}) {
     const { plant } = store.get();
     kind.value = plant.type;
     expression.hidden = plant.type !== "expr";
-    model.hidden = plant.type === "expr";
+    model.hidden = plant.type === "expr" || plant.type === "ss";
+    matrices.root.hidden = plant.type !== "ss";
     if (plant.type === "expr") {
       if (plant.text !== typed || document.activeElement !== input) {
         typed = plant.text;
         if (input.value !== plant.text) input.value = plant.text;
       }
       card.summarise(plant.text);
+    } else if (plant.type === "ss") {
+      matrices.show(plant);
+      card.summarise(`matrices, ${plant.A.length === 1 ? "1 state" : `${plant.A.length} states`}`);
     } else {
       build(plant.type);
       for (const [name, knob] of knobs) knob.value = /** @type {Record<string, any>} */ (plant)[name];

@@ -31,6 +31,13 @@ export const SIGNALS = {
   CFS: { label: "CFS", name: "setpoint to controller output, weighted", dash: "dashdot", width: 1.75 },
   TF: { label: "TF", name: "setpoint to output, weighted", dash: "dash", width: 2 },
   T: { label: "T", name: "complementary sensitivity", dash: "longdash", width: 2.25 },
+  term: { label: "terms", name: "what is added up", dash: "solid", width: 1 },
+  sum: { label: "sum", name: "sum of the terms", dash: "dash", width: 2 },
+  simulated: { label: "simulated", name: "simulation of the same transform", dash: "dot", width: 2 },
+  half_rule: { label: "half rule", name: "half rule", dash: "dash", width: 2 },
+  taylor: { label: "Taylor", name: "Taylor", dash: "dot", width: 2 },
+  two_point: { label: "two points", name: "two points of the step response", dash: "dashdot", width: 2 },
+  least_squares: { label: "least squares", name: "least squares", dash: "longdash", width: 2 },
 };
 
 /**

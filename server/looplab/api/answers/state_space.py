@@ -60,6 +60,15 @@ class CancelledMode(Answer):
     stable: bool
 
 
+class RealizationAnswer(Answer):
+    """State equations of one channel."""
+
+    A: Matrix
+    B: Matrix
+    C: Matrix
+    D: Matrix
+
+
 class ChannelAnswer(Answer):
     """Transfer function of one input and output, with every mode and without those that cancel; null with a reason."""
 
@@ -70,6 +79,7 @@ class ChannelAnswer(Answer):
     system: SystemText | None
     minimal: SystemText | None
     minimal_order: int | None
+    realization: Annotated[RealizationAnswer | None, Field(description="Of the minimal transfer function.")]
     cancelled: list[CancelledMode]
     cancel_tolerance: float
     closest_kept: Annotated[float | None, Field(description="Distance of the closest zero and pole that were kept.")]

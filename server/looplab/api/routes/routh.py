@@ -47,7 +47,7 @@ class RouthRequest(Model):
     tau_I: (
         Annotated[
             list[Annotated[float, Field(gt=0)]],
-            Field(min_length=1, max_length=25, description="Cuts of the stable region of a PI controller [time]."),
+            Field(min_length=1, max_length=60, description="Cuts of the stable region of a PI controller [time]."),
         ]
         | None
     ) = None

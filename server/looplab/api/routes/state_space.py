@@ -110,9 +110,14 @@ def _pair(value: complex) -> list[float]:
     return [value.real, value.imag]
 
 
+def _realization(system: TransferFunction) -> dict[str, Any]:
+    model = StateSpaceModel.from_transfer_function(system)
+    return {name: getattr(model, name).tolist() for name in "ABCD"}
+
+
 def _channel(model: StateSpaceModel, output: int, input: int, tolerance: float) -> dict[str, Any]:
     answer: dict[str, Any] = {"output": output, "input": input, "cancelled": [], "cancel_tolerance": tolerance}
-    fields = ("zeros", "gain", "system", "minimal", "minimal_order", "closest_kept", "reason")
+    fields = ("zeros", "gain", "system", "minimal", "minimal_order", "realization", "closest_kept", "reason")
     answer |= dict.fromkeys(fields)
     try:
         system = to_transfer_function(model, output, input)
@@ -126,6 +131,7 @@ def _channel(model: StateSpaceModel, output: int, input: int, tolerance: float) 
         answer |= {
             "minimal": _text(found.system),
             "minimal_order": found.system.order,
+            "realization": _realization(found.system),
             "closest_kept": found.closest_kept,
             "cancelled": [asdict(c) | {"pole": _pair(c.pole), "zero": _pair(c.zero)} for c in found.cancelled],
         }
