@@ -1,0 +1,1 @@
+"""Systems with dead times anywhere inside them."""
