@@ -178,7 +178,8 @@ class DelaySystem:
         """The same system with its states scaled to equal sizes by powers of two."""
         if not self.order:
             return self
-        _, (scale, _) = matrix_balance(self.A, permute=False, separate=True)
+        size = np.abs(self.A) + np.abs(self.B2) @ np.abs(self.C2)
+        _, (scale, _) = matrix_balance(size, permute=False, separate=True)
         return DelaySystem(
             self.A * (scale / scale[:, None]), self.B / scale[:, None], self.C * scale, self.D, self.tau
         )

@@ -55,7 +55,7 @@ def _dead_time_poles(loop: FeedbackLoop) -> ComplexArray:
     found = crossings(L)
     fastest = float(found.gain_omega.max(initial=0.0))
     nodes = int(min(20 + np.ceil(1.5 * theta * fastest), 120))
-    candidates = np.linalg.eigvals(delay_line_matrix(loop_equations(loop), theta, nodes)).astype(complex)
+    candidates = np.linalg.eigvals(delay_line_matrix(loop_equations(loop.lumped), theta, nodes)).astype(complex)
     # The collocation resolves about half a wave per node; what it cannot resolve is noise.
     candidates = candidates[(np.abs(candidates.imag) * theta < 0.75 * nodes) & (candidates.imag >= 0)]
     # Beyond the collocation's reach each phase crossover has a pole close by.
@@ -91,7 +91,7 @@ def _distinct(poles: ComplexArray) -> ComplexArray:
 
 @lru_cache(maxsize=128)
 def closed_loop_poles(loop: FeedbackLoop) -> ClosedLoopPoles:
-    r"""Roots of 1 + P(s) C(s) = 0, hidden (cancelled) modes included.
+    r"""Roots of 1 + L(s) = 0, hidden (cancelled) modes included.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def closed_loop_poles(loop: FeedbackLoop) -> ClosedLoopPoles:
     .. [1] D. Breda, S. Maset, R. Vermiglio, SIAM J. Sci. Comput. 27 (2005) 482-495 (pseudospectral collocation).
     """
     if loop.theta == 0.0 or loop.open_loop.gain == 0.0:
-        poles = np.linalg.eigvals(loop_equations(loop).closed_loop_matrix()).astype(complex)
+        poles = np.linalg.eigvals(loop_equations(loop.lumped).closed_loop_matrix()).astype(complex)
         polished, good = polish_closed_loop_poles(loop.open_loop, poles, steps=2)
         return ClosedLoopPoles(_sorted(np.where(good, polished, poles)), True)
     reason = "dead time makes infinitely many closed-loop poles; the rightmost are listed"
