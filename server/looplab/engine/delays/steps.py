@@ -76,7 +76,8 @@ class Steps:
             self._keep(a, h, piece)
             if not float(size.max(initial=0.0)) < LARGEST_STATE:
                 return a + h
-            wanted = h * (2.0 if error < 1e-3 * TAIL else 1.25)
+            # A short piece before an edge says nothing about the next ones.
+            wanted = max(wanted, h * (2.0 if error < 1e-3 * TAIL else 1.25))
             a, x = (edges[at], x_new) if parts == 1 else (a + h, x_new)
             at += parts == 1
         return self.horizon
