@@ -8,6 +8,7 @@ from looplab import __version__
 from looplab.api import errors, pages
 from looplab.api.limits import BodyLimit
 from looplab.api.routes import (
+    connect,
     frequency,
     health,
     labs,
@@ -52,7 +53,10 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         redoc_url=None,
     )
     v1 = APIRouter(prefix="/api/v1")
-    for module in (health, loop, frequency, root_locus, tune, laplace, labs, routh, stability, response, state_space):
+    modules = (
+        health, loop, frequency, root_locus, tune, laplace, labs, routh, stability, response, state_space, connect
+    )  # fmt: skip
+    for module in modules:
         v1.include_router(module.router)
     app.include_router(v1)
     errors.install(app)

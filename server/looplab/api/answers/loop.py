@@ -33,17 +33,18 @@ class VerdictPanel(Answer):
 
 
 class StepResponse(Answer):
-    """y and u after a unit step; shorter than t where the response was cut."""
+    """y and u after a unit step, shorter than t where the response was cut; y_m is what a sensor makes of y."""
 
     y: Numbers
     u: Numbers
+    y_m: Numbers | None
     final_y: float | None
     truncated_at: float | None
     truncated_reason: str | None
 
 
 class StepPanel(Answer):
-    """Responses to unit steps of the setpoint and of the load at the plant input."""
+    """Responses to unit steps of the setpoint and of the load."""
 
     key: str
     horizon: float
@@ -263,5 +264,8 @@ class LoopAnswer(Answer):
     time_unit: str
     plant: PlantText
     controller: SystemText
+    actuator: SystemText | None
+    sensor: SystemText | None
+    disturbance: SystemText | None
     unchanged: list[str]
     panels: LoopPanels

@@ -44,9 +44,9 @@ def margins_panel(context: LoopContext) -> dict[str, Any]:
 
 
 def sensitivity(context: LoopContext) -> dict[str, Any]:
-    """Magnitudes of S, T, PS and CS."""
+    """Magnitudes of S, T, PS (load to y) and CS."""
     loop, L = context.loop, context.open_loop
-    P, C = (sampled(system, *context.omega_range, loop.open_loop) for system in (loop.plant, loop.C))
+    P, C = (sampled(system, *context.omega_range, loop.open_loop) for system in (loop.load_path, loop.C))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         S = -np.log(np.abs(1.0 + np.exp(L.log_magnitude + 1j * L.phase)))
         curves = {"S": S, "T": S + L.log_magnitude, "PS": S + P.log_magnitude, "CS": S + C.log_magnitude}

@@ -1,4 +1,4 @@
-"""Block diagrams of one-channel systems: connected exactly, and as one transfer function for as long as they are one."""
+"""Block diagrams of one-channel systems: connected exactly, and as one transfer function while they are one."""
 
 from __future__ import annotations
 
@@ -38,10 +38,8 @@ class Block:
         return cls(DelaySystem.from_transfer_function(transfer_function), transfer_function)
 
 
-def _connected(system: DelaySystem, compute: EngineError | TransferFunction | str) -> Block:
-    if isinstance(compute, TransferFunction):
-        return Block(system, compute)
-    return Block(system, None, compute if isinstance(compute, str) else compute.message)
+def _connected(system: DelaySystem, known: TransferFunction | str) -> Block:
+    return Block(system, known) if isinstance(known, TransferFunction) else Block(system, None, known)
 
 
 def in_series(blocks: list[Block]) -> Block:

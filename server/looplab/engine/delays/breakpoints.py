@@ -83,10 +83,10 @@ def breakpoints(system: DelaySystem, parts: Channels, horizon: float) -> FloatAr
     for j in range(system.inputs):
         follow(0.0, system.D21[:, j], by_input.order[:, j], by_input.size[:, j], 0, 1.0)
     times = set()
-    for i, found in step_events(system, parts.inputs).items():
-        for at, size in found:
+    for i, events in step_events(system, parts.inputs).items():
+        for at, sizes in events:
             times.add(at)
-            height = float(np.abs(size).max())
+            height = float(np.abs(sizes).max())
             follow(at, system.D22[:, i], by_delay.order[:, i], by_delay.size[:, i], 0, height)
     largest = max((weight(order, size) for _, _, order, size in heap), default=0.0)
     while heap:

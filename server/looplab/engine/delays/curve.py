@@ -53,7 +53,7 @@ class Curve:
 
 
 def _sample(system: DelaySystem, omega: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-    value, slope = transfer_and_slope(system, 1j * omega)
+    value, slope = transfer_and_slope(system, (1j * omega).astype(complex))
     with np.errstate(divide="ignore", invalid="ignore"):
         return value[:, 0, 0], slope[:, 0, 0] / value[:, 0, 0]
 
@@ -65,7 +65,7 @@ def log_magnitude(system: DelaySystem, x: FloatArray) -> FloatArray:
 
 
 def corner_range(system: DelaySystem) -> tuple[float, float]:
-    """Decades that hold the poles of the rational part, the rightmost poles and the dead times, one to spare [rad/time]."""
+    """Decades that hold poles (rightmost and of the rational part) and dead times, one to spare [rad/time]."""
     poles = np.abs(np.concatenate([np.linalg.eigvals(system.A), rightmost_poles(system).poles]))
     # Eigenvalues of an integrator come out as rounding.
     poles = poles[poles > 1e-9 * poles.max(initial=0.0)]
@@ -116,14 +116,15 @@ def _refine(system: DelaySystem, omega: FloatArray) -> tuple[FloatArray, Complex
 def _extrema(system: DelaySystem, omega: FloatArray, slope: ComplexArray) -> FloatArray:
     """Where magnitude or phase turn between two points of the grid: no pair of crossings hides there."""
     found = []
-    for part in (lambda q: -q.imag, lambda q: q.real):
-        rate = part(slope)
+    # d ln|L|/d omega is -Im, d arg L/d omega is Re of d ln L/ds.
+    for turned in (1j, 1.0):
+        rate = (turned * slope).real
         at = np.flatnonzero(rate[:-1] * rate[1:] < 0)
 
-        def sign(x: FloatArray, part=part) -> FloatArray:  # type: ignore[no-untyped-def]
-            return np.asarray(part(_sample(system, np.exp(x))[1]))
+        def rates(x: FloatArray, turned: complex = turned) -> FloatArray:
+            return np.asarray((turned * _sample(system, np.exp(x))[1]).real)
 
-        found.append(np.exp(refine_brackets(sign, np.log(omega[at]), np.log(omega[at + 1]), 25)))
+        found.append(np.exp(refine_brackets(rates, np.log(omega[at]), np.log(omega[at + 1]), 25)))
     return np.concatenate(found)
 
 
@@ -177,7 +178,8 @@ def follow(system: DelaySystem, low: float | None = None, high: float | None = N
     turn = np.angle(value[1:] / value[:-1])
     # A pole on the axis is passed on its right: the phase falls by pi there; at a zero it rises.
     sharp = np.abs(turn) > 2.0
-    turn[sharp] = np.where(np.abs(value[:-1])[sharp] > np.median(np.abs(value)), -np.abs(turn[sharp]), np.abs(turn[sharp]))
+    at_pole = np.abs(value[:-1])[sharp] > np.median(np.abs(value))
+    turn[sharp] = np.abs(turn[sharp]) * np.where(at_pole, -1.0, 1.0)
     k0 = (value[0] * (1j * omega[0]) ** order).real
     anchor = -0.5 * np.pi * order - (np.pi if k0 < 0 else 0.0)
     first = anchor + float(np.angle(value[0] * np.exp(-1j * anchor)))

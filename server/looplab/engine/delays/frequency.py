@@ -118,7 +118,7 @@ def _peak(system: DelaySystem, curve: Curve, kind: str) -> tuple[float, float]:
     """Largest |S| or |T| on the curve, refined; (value, omega)."""
 
     def size_and_rate(omega: FloatArray) -> tuple[FloatArray, FloatArray]:
-        value, slope = transfer_and_slope(system, 1j * omega)
+        value, slope = transfer_and_slope(system, (1j * omega).astype(complex))
         L, q = value[:, 0, 0], slope[:, 0, 0] / value[:, 0, 0]
         S = 1.0 / (1.0 + L)
         function = S if kind == "S" else L * S
@@ -139,6 +139,49 @@ def _peak(system: DelaySystem, curve: Curve, kind: str) -> tuple[float, float]:
     return top, where
 
 
+_GAIN, _PHASE = ("GM", "GM_dB", "omega_180"), ("PM_deg", "omega_c", "delay_margin")
+
+
+def _cuts(system: DelaySystem, curve: Curve) -> dict[str, str]:
+    """What the end of the grid cuts off."""
+    if not system.tau.size:
+        return {}
+    last = f"up to omega = {curve.omega[-1]:.4g}"
+    reasons = {"phase_crossovers": f"the dead times may make infinitely many: listed {last}"}
+    if curve.overrun:
+        turns = "the dead times turn the curve more than 250 times before |L| falls below 1"
+        reasons["gain_crossovers"] = f"{turns}: listed {last}"
+    if curve.overrun or not curve.fading:
+        reasons["Ms"] = reasons["Mt"] = f"the largest {last}"
+    return reasons
+
+
+def _size(L: float, kind: str) -> float:
+    """|S| or |T| for a real L, infinite ones included."""
+    if L == -1.0:
+        return np.inf
+    if np.isinf(L):
+        return 1.0 if kind == "T" else 0.0
+    return abs((1.0 if kind == "S" else L) / (1.0 + L))
+
+
+def _peaks(system: DelaySystem, curve: Curve, at_rest: float, reasons: dict[str, str]) -> dict[str, float | None]:
+    """Ms and Mt with their frequencies, the ends of the axis included."""
+    out: dict[str, float | None] = {}
+    ends = [(at_rest, 0.0)] if system.tau.size else [(at_rest, 0.0), (float(system.D11[0, 0]), np.inf)]
+    for kind, name in (("S", "Ms"), ("T", "Mt")):
+        size, where = _peak(system, curve, kind)
+        for L, omega in ends:
+            if _size(L, kind) >= size * (1 - 1e-12):
+                size, where = _size(L, kind), omega
+        out |= {name: size, f"omega_{name}": where}
+        if not size < 1e8:
+            out[name], reasons[name] = None, "infinite: the Nyquist curve passes through -1"
+        if where == np.inf:
+            out[f"omega_{name}"], reasons[f"omega_{name}"] = None, "approached at ever higher frequencies"
+    return out
+
+
 @lru_cache(maxsize=32)
 def delay_margins(system: DelaySystem) -> Margins:
     r"""Margins of an open loop under unit negative feedback, dead times exact.
@@ -156,8 +199,8 @@ def delay_margins(system: DelaySystem) -> Margins:
     Returns
     -------
     Margins
-        As ``frequency.margins`` has them. The lists end where \|L\| stays below 0.05, or where the dead times have turned
-        the curve 250 times; ``reasons`` says which.
+        As ``frequency.margins`` has them. The lists end where \|L\| stays below 0.05, or where the dead times have
+        turned the curve 250 times; ``reasons`` says where.
 
     Raises
     ------
@@ -168,64 +211,33 @@ def delay_margins(system: DelaySystem) -> Margins:
     ----------
     .. [1] S. Skogestad, I. Postlethwaite, Multivariable Feedback Control, 2nd ed., Wiley 2005, sec. 2.4.
     """
-    verdict = delay_verdict(feedback(system))
-    stable = verdict.closed_loop_stable
+    stable = delay_verdict(feedback(system)).closed_loop_stable
     curve = follow(system)
-    names = ("GM", "GM_dB", "omega_180", "PM_deg", "omega_c", "delay_margin")
+    found: dict[str, float | None] = dict.fromkeys((*_GAIN, *_PHASE))
     if curve is None:
-        why = dict.fromkeys(names, "undefined: the open loop is zero")
-        return Margins(stable, *[None] * 6, 1.0, 0.0, 0.0, 0.0, (), (), why)
-    reasons: dict[str, str] = {}
+        why = dict.fromkeys(found, "undefined: the open loop is zero")
+        at_zero = dict(Ms=1.0, omega_Ms=0.0, Mt=0.0, omega_Mt=0.0)
+        return Margins(stable, gain_crossovers=(), phase_crossovers=(), reasons=why, **found, **at_zero)
+    reasons = _cuts(system, curve)
     gain, room, phase = _crossings(system, curve)
-    at_rest = _at_rest(system, curve)
-    if at_rest is not None and at_rest < 0:
+    at_rest = np.inf if curve.origin_order > 0 else float(transfer_matrix(system, 0.0)[0, 0, 0].real)
+    if at_rest < 0:
         phase.insert(0, PhaseCrossover(0.0, 1.0 / abs(at_rest)))
-    if system.tau.size:
-        last = f"listed up to omega = {curve.omega[-1]:.4g}"
-        if curve.overrun:
-            reasons["gain_crossovers"] = f"the dead times turn the curve more than 250 times before |L| falls below 1: {last}"
-        if curve.overrun or not curve.fading:
-            reasons["Ms"] = reasons["Mt"] = f"the largest up to omega = {curve.omega[-1]:.4g}"
-        reasons["phase_crossovers"] = f"the dead times may make infinitely many: {last}"
-    GM = omega_180 = GM_dB = PM_deg = omega_c = delay_margin = None
     if phase:
         nearest = min(phase, key=lambda c: abs(np.log(c.GM)))
-        GM, omega_180, GM_dB = nearest.GM, nearest.omega, float(20 * np.log10(nearest.GM))
+        found |= {"GM": nearest.GM, "GM_dB": float(20 * np.log10(nearest.GM)), "omega_180": nearest.omega}
     else:
-        reasons |= dict.fromkeys(names[:3], "infinite: the phase never reaches -180 deg")
+        reasons |= dict.fromkeys(_GAIN, "infinite: the phase never reaches -180 deg")
     if gain:
         tightest = min(gain, key=lambda c: abs(c.PM_deg))
-        PM_deg, omega_c = tightest.PM_deg, tightest.omega
+        found |= {"PM_deg": tightest.PM_deg, "omega_c": tightest.omega}
         if stable:
-            delay_margin = min(room)
+            found["delay_margin"] = min(room)
         else:
             reasons["delay_margin"] = "undefined: the closed loop is not stable as it is"
     else:
-        reasons |= dict.fromkeys(names[3:], "infinite: the gain never reaches 1")
-    peaks = []
-    for kind, name in (("S", "Ms"), ("T", "Mt")):
-        size, where = _peak(system, curve, kind)
-        ends = [(at_rest, 0.0)] if at_rest is not None else [(np.inf, 0.0)]
-        if not system.tau.size:
-            ends.append((float(system.D11[0, 0]), np.inf))
-        for L, w in ends:
-            value = 1.0 if kind == "T" and np.isinf(L) else abs((1.0 if kind == "S" else L) / (1.0 + L)) if L != -1 else np.inf
-            if value >= size * (1 - 1e-12):
-                size, where = value, w
-        peak: float | None = size
-        if not size < 1e8:
-            peak, reasons[name] = None, "infinite: the Nyquist curve passes through -1"
-        at: float | None = where
-        if where == np.inf:
-            at, reasons[f"omega_{name}"] = None, "approached at ever higher frequencies"
-        peaks += [peak, at]
+        reasons |= dict.fromkeys(_PHASE, "infinite: the gain never reaches 1")
+    peaks = _peaks(system, curve, at_rest, reasons)
     return Margins(
-        stable, GM, GM_dB, omega_180, PM_deg, omega_c, delay_margin, *peaks, tuple(gain), tuple(phase), reasons
+        stable, gain_crossovers=tuple(gain), phase_crossovers=tuple(phase), reasons=reasons, **found, **peaks
     )
-
-
-def _at_rest(system: DelaySystem, curve: Curve) -> float | None:
-    """L(0) where it is finite."""
-    if curve.origin_order > 0:
-        return None
-    return float(transfer_matrix(system, np.zeros(1))[0, 0, 0].real)

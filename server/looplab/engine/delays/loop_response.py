@@ -94,7 +94,7 @@ def _shifts(loop: FeedbackLoop) -> FloatArray:
 
 
 def _aligned(points: int, horizon: float, theta: float, pieces: int, shifts: FloatArray) -> int:
-    """Points for which the shifts are whole samples, where their ratios to the dead time are simple; else ``points``."""
+    """Points for which the shifts are whole samples, where their ratios to the dead time are simple."""
     per_dead_time = theta * (points - 1) / horizon
     if per_dead_time < 1.0:
         return points
@@ -155,14 +155,14 @@ def loop_step(loop: FeedbackLoop, horizon: float, points: int) -> ClosedLoopStep
     why = f"the response grows beyond {LARGEST_VALUE:g}: the loop is unstable"
     responses = []
     for j, final in enumerate(_final_values(loop)):
-        rows = np.zeros((grid.count, 2 * p))
+        shifted = np.zeros((grid.count, 2 * p))
         for i in range(p):
             shift = int(whole[j, i])
             column = j * p + i
             moved = values[max(0, -shift) : max(0, grid.count - shift), :, j]
-            rows[max(0, shift) :, i] = moved[:, column]
-            rows[max(0, shift) :, p + i] = moved[:, 2 * p + column]
-        responses.append(_cut(grid.t, rows, loop.sensor is not None, final, why))
+            shifted[max(0, shift) :, i] = moved[:, column]
+            shifted[max(0, shift) :, p + i] = moved[:, 2 * p + column]
+        responses.append(_cut(grid.t, shifted, loop.sensor is not None, final, why))
     return ClosedLoopStep(grid.t, horizon, *responses)
 
 

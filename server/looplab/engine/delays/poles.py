@@ -35,7 +35,7 @@ def _line_matrix(system: DelaySystem, nodes: int) -> FloatArray:
     M = np.zeros((n + k * nodes, n + k * nodes))
     ends = n + nodes * np.arange(1, k + 1) - 1
     M[:n, :n] = system.A
-    M[np.ix_(range(n), ends)] = system.B2
+    M[:n, ends] = system.B2
     for i in range(k):
         D = chebyshev_differentiation(nodes) / system.tau[i]
         rows = slice(n + i * nodes, n + (i + 1) * nodes)
@@ -51,8 +51,8 @@ def newton(system: DelaySystem, s: ComplexArray) -> tuple[ComplexArray, ComplexA
     with np.errstate(all="ignore"):
         for _ in range(NEWTON_STEPS):
             H = characteristic_matrix(system, s)
-            whole = np.isfinite(H).all(axis=(1, 2))
-            whole[whole] = np.linalg.slogdet(H[whole])[0] != 0
+            whole = np.flatnonzero(np.isfinite(H).all(axis=(1, 2)))
+            whole = whole[np.linalg.slogdet(H[whole])[0] != 0]
             step = np.zeros_like(s)
             inner = np.linalg.solve(H[whole], characteristic_slope(system, s[whole]))
             step[whole] = 1.0 / np.trace(inner, axis1=1, axis2=2)

@@ -90,7 +90,7 @@ def _solve(H: ComplexArray, right: ComplexArray) -> ComplexArray:
 def transfer_matrix(system: DelaySystem, s: npt.ArrayLike) -> ComplexArray:
     r"""G(s), dead times exact.
 
-    .. math:: G = D_{11} + [C_1,\; D_{12}\Delta]\, H^{-1} [B_1;\; D_{21}], \qquad \Delta = \operatorname{diag}(e^{-s\tau})
+    .. math:: G = D_{11} + [C_1, D_{12}\Delta]\, H^{-1} [B_1;\, D_{21}], \quad \Delta = \operatorname{diag}(e^{-s\tau})
 
     Parameters
     ----------
@@ -119,9 +119,7 @@ def transfer_and_slope(system: DelaySystem, s: ComplexArray, slope: bool = True)
     values, slopes = [], []
     for part in _parts(s, system.order + system.tau.size):
         delta = _delays(system, part)[:, None, :]
-        left = np.concatenate(
-            [np.broadcast_to(system.C1, (part.size, *system.C1.shape)), system.D12 * delta], axis=2
-        )
+        left = np.concatenate([np.broadcast_to(system.C1, (part.size, *system.C1.shape)), system.D12 * delta], axis=2)
         H = characteristic_matrix(system, part)
         with np.errstate(invalid="ignore", over="ignore"):
             inner = _solve(H, right)

@@ -1,4 +1,4 @@
-"""Which delay of a system lies in a loop, which only delays an input or an output: read off the zeros of the matrices."""
+"""Which delay of a system lies in a loop, which only delays an input or an output: seen in the zeros of matrices."""
 
 from __future__ import annotations
 
@@ -14,9 +14,8 @@ Flags = npt.NDArray[np.bool_]
 
 
 def reachable(system: DelaySystem) -> Flags:
-    """[i, j] True where signal j acts on signal i, over one step or many; signals are the n states, then the k delays."""
-    edge = np.block([[system.A, system.B2], [system.C2, system.D22]]) != 0
-    reach = edge
+    """[i, j] True where signal j acts on signal i, at once or in the end; signals are n states, then k delays."""
+    reach: Flags = np.asarray(np.block([[system.A, system.B2], [system.C2, system.D22]]) != 0)
     while True:
         # Products of counts, not of flags: numpy has no fast boolean product.
         longer = reach | (reach.astype(float) @ reach.astype(float) > 0)
@@ -109,7 +108,7 @@ def _radius(matrix: npt.NDArray) -> float:
 
 
 def step_events(system: DelaySystem, inputs: list[int]) -> dict[int, list[tuple[float, FloatArray]]]:
-    """For each channel of ``inputs`` the steps that leave it: (time, size for a unit step of each input, shape (m,))."""
+    """For each channel of ``inputs`` the steps that leave it: (time, size for a unit step of each input, (m,))."""
     out: dict[int, list[tuple[float, FloatArray]]] = {}
     for i in inputs:
         tau = float(system.tau[i])

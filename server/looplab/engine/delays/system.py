@@ -180,9 +180,7 @@ class DelaySystem:
             return self
         size = np.abs(self.A) + np.abs(self.B2) @ np.abs(self.C2)
         _, (scale, _) = matrix_balance(size, permute=False, separate=True)
-        return DelaySystem(
-            self.A * (scale / scale[:, None]), self.B / scale[:, None], self.C * scale, self.D, self.tau
-        )
+        return DelaySystem(self.A * (scale / scale[:, None]), self.B / scale[:, None], self.C * scale, self.D, self.tau)
 
     def delayed(self, theta: float) -> DelaySystem:
         """The same system with each output later by ``theta``, >= 0 [time]."""

@@ -1,11 +1,11 @@
 r"""Is a system with dead times stable? The argument principle on det H(s), exact with every dead time in it.
 
-With n states and :math:`\delta(s) = \det(I - D_{22}\Delta)`, f(s) = det H(s)/(s + a)^n is analytic right of the imaginary
-axis and f/delta tends to 1 far out. So the poles right of the axis are
+With n states and :math:`\delta(s) = \det(I - D_{22}\Delta)`, f(s) = det H(s)/(s + a)^n is analytic right of the
+imaginary axis and f/delta tends to 1 far out. So the poles right of the axis are
 
 .. math:: Z = -\frac{1}{\pi} \left[\arg \frac{f}{\delta}(j\omega)\right]_0^\infty
 
-The phase is followed up to a frequency beyond which the loops have a gain below 1; from there it is known in closed form.
+The phase is followed up to a frequency beyond which the loops have a gain below 1; from there it is known.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from looplab.engine.delays.poles import newton, rightmost_poles
+from looplab.engine.delays.poles import rightmost_poles
 from looplab.engine.delays.resolvent import characteristic_phase, transfer_matrix
 from looplab.engine.delays.structure import echo, in_loops
 from looplab.engine.delays.system import DelaySystem
@@ -43,7 +43,7 @@ def _angles(matrix: ComplexArray) -> float:
 
 
 def _last_frequency(system: DelaySystem, shift: float, above: float) -> tuple[float, bool]:
-    """Beyond which frequency the loops through the delays have a gain below 1, and whether \\|D22\\| alone leaves room."""
+    """Beyond which frequency the loops through the delays have a gain below 1, and whether \\|D22\\| leaves room."""
     inner = _inner(system)
     k = system.tau.size
     size = max(float(np.abs(system.A).sum(axis=1).max(initial=0.0)), float((1.0 / system.tau).max()), shift)
@@ -123,7 +123,7 @@ def count_right_of(system: DelaySystem, shift: float = 0.0) -> int | None:
     a = last
 
     def follow(w: FloatArray) -> tuple[ComplexArray, FloatArray]:
-        s = shift + 1j * w
+        s = (shift + 1j * w).astype(complex)
         sign, slope = characteristic_phase(system, s)
         return sign * np.exp(-1j * n * np.angle(s + a)), (1j * (slope - n / (s + a))).imag
 
@@ -190,7 +190,7 @@ def delay_verdict(system: DelaySystem) -> Verdict:
     system = system.balanced
     if not in_loops(system).any():
         return verdict_from_poles(rightmost_poles(system).poles, "pole", "system")
-    below, above = echo(system)
+    below, _ = echo(system)
     if below >= 1.0 - 1e-12:
         where = "right of the imaginary axis" if below > 1.0 + 1e-12 else "at the imaginary axis"
         return Verdict(
@@ -226,7 +226,7 @@ def _on_the_axis(system: DelaySystem, on_axis: ComplexArray, rightmost: str) -> 
     for p in on_axis:
         # Around a pole of multiplicity m the logarithmic derivative of det H is m/(s - p).
         circle = p + 1e-4 * scale * np.exp(2j * np.pi * np.arange(16) / 16)
-        _, slope = characteristic_phase(system, circle)
+        _, slope = characteristic_phase(system, circle.astype(complex))
         if round(float(np.mean(slope * (circle - p)).real)) > 1:
             return Verdict("unstable", False, "a repeated pole lies on the imaginary axis", 0)
     p = complex(on_axis[np.argmax(on_axis.imag)])

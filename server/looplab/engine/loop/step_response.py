@@ -174,7 +174,8 @@ def closed_loop_step(loop: FeedbackLoop, horizon: float, points: int = 500) -> C
     Returns
     -------
     ClosedLoopStep
-        The load enters at the plant input, or through Gd. An unstable response is cut where it leaves +-1e9, with the reason.
+        The load enters at the plant input, or through Gd. An unstable response is cut where it leaves +-1e9, with
+        the reason.
 
     Raises
     ------
