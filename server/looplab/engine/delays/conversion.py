@@ -118,7 +118,7 @@ def minimal_delay_system(system: DelaySystem, tolerance: float = TOLERANCE) -> M
     reach[np.diag_indices(n + k)] = True
     driven = np.vstack([system.B1, system.D21]).any(axis=1)
     shown = np.hstack([system.C1, system.D12]).any(axis=0)
-    alive = np.any(reach[n:] & driven, axis=1) & np.any(reach[:, n:] & shown[:, None], axis=0)
+    alive = np.array([(reach[n + i] & driven).any() and (reach[:, n + i] & shown).any() for i in range(k)], dtype=bool)
     rows = np.append(np.arange(system.outputs), system.outputs + np.flatnonzero(alive))
     columns = np.append(np.arange(system.inputs), system.inputs + np.flatnonzero(alive))
     found = remove_hidden_modes(system.A, system.B[:, columns], system.C[rows], tolerance)

@@ -11,7 +11,8 @@ from looplab.engine.delays.system import DelaySystem
 from looplab.engine.errors import NoConvergence
 from looplab.engine.systems.polynomial import FloatArray
 
-MAX_PIECES = 20_000
+# Of the size of the shortest dead time or lag.
+MAX_PIECES = 6_000
 # Of the last coefficients of a piece, relative to the largest value so far.
 TAIL = 2e-13
 LARGEST_STATE = 1e13
