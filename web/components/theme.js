@@ -5,7 +5,7 @@
 /** @typedef {"auto" | "light" | "dark"} ThemeChoice */
 
 const STORAGE_KEY = "looplab-theme";
-const SIGNALS = ["r", "y", "u", "d", "n", "e", "L", "P", "C", "S", "PS", "CS", "T", "margin", "pole", "locus"];
+const SIGNALS = ["r", "y", "y_m", "u", "d", "n", "e", "L", "P", "C", "S", "PS", "CS", "T", "margin", "pole", "locus"];
 const systemDark = matchMedia("(prefers-color-scheme: dark)");
 
 /** @returns {ThemeChoice} */

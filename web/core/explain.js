@@ -38,8 +38,8 @@ export const METRIC_FIELDS = ["final_value", "offset", "overshoot_pct", "t_peak"
 
 /** How to read each plot. @type {Record<string, string>} */
 export const PLOT_HELP = {
-  step: "Above, what the process does (y); below, what the controller asks for (u). A setpoint step asks y to go to 1; a load step pushes on the plant's input and asks the controller to push back.",
-  bode: "The open loop L = P·C against frequency. Where |L| crosses 0 dB, the distance of the phase from −180° is the phase margin; where the phase crosses −180°, the distance of |L| from 0 dB is the gain margin.",
+  step: "Above, what the process does (y); below, what the controller asks for (u). With a sensor, yₘ is what the controller sees of y. A setpoint step asks y to go to 1; a load step pushes on the plant's input and asks the controller to push back.",
+  bode: "The open loop L = P·C (with actuator and sensor L = C·A·P·H) against frequency. Where |L| crosses 0 dB, the distance of the phase from −180° is the phase margin; where the phase crosses −180°, the distance of |L| from 0 dB is the gain margin.",
   nyquist: "L(iω) drawn in the complex plane, with its mirror image for negative frequencies. The closed loop has Z = N + P poles in the right half plane: N clockwise turns of the curve about −1, P poles of L in the right half plane.",
   root_locus: "The paths of the closed-loop poles as the controller gain goes from 0 to ∞: from the open-loop poles (×) to the zeros (○). Squares are the poles at the gain set now. Left of the vertical axis is stable.",
   sensitivity: "The gang of four: how the loop passes on setpoint, load, noise and disturbance. Below 0 dB, S says that feedback helps; its peak is Ms.",

@@ -16,7 +16,7 @@ class SystemText(Answer):
 
 
 class PlantText(SystemText):
-    """The plant, with its order and dead time [time]."""
+    """A plant (or another part of the loop), with its order and dead time [time]."""
 
     order: int
     theta: float
@@ -264,8 +264,8 @@ class LoopAnswer(Answer):
     time_unit: str
     plant: PlantText
     controller: SystemText
-    actuator: SystemText | None
-    sensor: SystemText | None
-    disturbance: SystemText | None
+    actuator: PlantText | None
+    sensor: PlantText | None
+    disturbance: PlantText | None
     unchanged: list[str]
     panels: LoopPanels

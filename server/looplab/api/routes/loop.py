@@ -49,11 +49,10 @@ class LoopRequest(Model):
 
 
 def _summary(request: LoopRequest, context: LoopContext) -> dict[str, Any]:
-    plant = context.loop.plant
     loop = context.loop
     texts: dict[str, dict[str, Any] | None] = {}
     for name, shape, system in (
-        ("plant", request.loop.plant, plant),
+        ("plant", request.loop.plant, loop.plant),
         ("controller", request.loop.controller, loop.C),
         ("actuator", request.loop.actuator, loop.actuator),
         ("sensor", request.loop.sensor, loop.sensor),
@@ -63,8 +62,9 @@ def _summary(request: LoopRequest, context: LoopContext) -> dict[str, Any]:
             texts[name] = None
             continue
         latex = shape.to_latex()
-        texts[name] = {"text": system.to_text(), "latex": latex, "mathml": render_math(latex)}
-    return texts | {"plant": {**(texts["plant"] or {}), "order": plant.order, "theta": plant.theta}}
+        text: dict[str, Any] = {"text": system.to_text(), "latex": latex, "mathml": render_math(latex)}
+        texts[name] = text if name == "controller" else text | {"order": system.order, "theta": system.theta}
+    return texts
 
 
 ACTUATOR_AND_SENSOR: dict[str, Any] = {
