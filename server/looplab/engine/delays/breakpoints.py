@@ -63,8 +63,8 @@ def breakpoints(system: DelaySystem, parts: Channels, horizon: float) -> FloatAr
     by_delay = _Passage(system, system.B2)
     by_input = _Passage(system, system.B1)
     grain = 1e-12 * horizon
-    # Time at the delay's end in grains, channel, order, size: sums of the same dead times are one time.
-    heap: list[tuple[int, int, int, float]] = []
+    # Time at the delay's end in grains, channel, order, size, that time: sums of the same dead times are one time.
+    heap: list[tuple[int, int, int, float, float]] = []
 
     factorial = np.cumprod(np.append(1.0, np.arange(1.0, SMOOTH + 2)))
 
@@ -74,11 +74,12 @@ def breakpoints(system: DelaySystem, parts: Channels, horizon: float) -> FloatAr
     def follow(at: float, direct: FloatArray, order: FloatArray, size: FloatArray, base: int, factor: float) -> None:
         """A break of order ``base`` and size ``factor`` acts on every core channel."""
         for i in core:
+            end = float(at + tau[i])
             if direct[i]:
-                heappush(heap, (round((at + tau[i]) / grain), i, base, factor * abs(direct[i])))
+                heappush(heap, (round(end / grain), i, base, factor * abs(direct[i]), end))
             # A break that passes directly hides the smoother one behind it.
             elif order[i] <= SMOOTH and base + order[i] <= SMOOTH:
-                heappush(heap, (round((at + tau[i]) / grain), i, base + int(order[i]), factor * size[i]))
+                heappush(heap, (round(end / grain), i, base + int(order[i]), factor * size[i], end))
 
     for j in range(system.inputs):
         follow(0.0, system.D21[:, j], by_input.order[:, j], by_input.size[:, j], 0, 1.0)
@@ -88,15 +89,14 @@ def breakpoints(system: DelaySystem, parts: Channels, horizon: float) -> FloatAr
             times.add(at)
             height = float(np.abs(sizes).max())
             follow(at, system.D22[:, i], by_delay.order[:, i], by_delay.size[:, i], 0, height)
-    largest = max((weight(order, size) for _, _, order, size in heap), default=0.0)
+    largest = max((weight(order, size) for _, _, order, size, _ in heap), default=0.0)
     while heap:
-        grains, i, order, size = heappop(heap)
+        grains, i, order, size, at = heappop(heap)
         while heap and heap[0][:2] == (grains, i):
-            _, _, other, more = heappop(heap)
+            _, _, other, more, _ = heappop(heap)
             if weight(other, more) > weight(order, size):
                 order, size = other, more
-        at = grains * grain
-        if at >= horizon - grain:
+        if at >= horizon - 2 * grain:
             continue
         seen = weight(order, size)
         largest = max(largest, seen)
@@ -110,5 +110,5 @@ def breakpoints(system: DelaySystem, parts: Channels, horizon: float) -> FloatAr
                 hint="shorten the horizon",
             )
         follow(at, system.D22[:, i], by_delay.order[:, i], by_delay.size[:, i], order, size)
-    found = np.array(sorted(t for t in times if 0 < t < horizon - grain))
+    found = np.array(sorted(t for t in times if 0 < t < horizon - 2 * grain))
     return found[np.append(True, np.diff(found) > 2 * grain)] if found.size else found

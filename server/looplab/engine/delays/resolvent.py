@@ -80,7 +80,7 @@ def _solve(H: ComplexArray, right: ComplexArray) -> ComplexArray:
         return np.asarray(np.linalg.solve(H, right))
     except np.linalg.LinAlgError:
         # One of them is a pole: the response there is infinite, the others are not.
-        out = np.full(np.broadcast_shapes(H.shape[:1], right.shape[:1]) + right.shape[-2:], np.inf + 0j)
+        out = np.full((*H.shape[:-1], right.shape[-1]), np.inf + 0j)
         for i, matrix in enumerate(H):
             if np.linalg.slogdet(matrix)[0] != 0:
                 out[i] = np.linalg.solve(matrix, right if right.ndim == 2 else right[i])

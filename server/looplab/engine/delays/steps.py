@@ -18,6 +18,14 @@ TAIL = 2e-13
 LARGEST_STATE = 1e13
 
 
+def _too_long() -> NoConvergence:
+    return NoConvergence(
+        "the shortest dead time or lag is too short for so long a horizon",
+        field="horizon",
+        hint="shorten the horizon, or leave the shortest dead time out",
+    )
+
+
 class Steps:
     """Responses to unit steps of each input at t = 0 from rest, piece by piece, and their values at any time.
 
@@ -55,6 +63,8 @@ class Steps:
     def _march(self) -> float:
         edges = np.append(self.breaks, self.horizon).tolist()
         longest = float(self.tau.min(initial=np.inf))
+        if self.horizon > MAX_PIECES * longest:
+            raise _too_long()
         a, at, x = 0.0, 0, np.zeros((self.n, self.m))
         wanted, scale = np.inf, np.zeros((self.n + self.tau.size, self.m))
         shortest = 1e-11 * self.horizon
@@ -127,11 +137,7 @@ class Steps:
 
     def _keep(self, a: float, h: float, piece: FloatArray) -> None:
         if self.count == MAX_PIECES:
-            raise NoConvergence(
-                "the shortest dead time or lag is too short for so long a horizon",
-                field="horizon",
-                hint="shorten the horizon, or leave the shortest dead time out",
-            )
+            raise _too_long()
         if self.count == self.starts.size:
             for name in ("starts", "lengths", "values"):
                 old = getattr(self, name)

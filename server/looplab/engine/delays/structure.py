@@ -88,15 +88,16 @@ def echo(system: DelaySystem) -> tuple[float, float]:
     above = _radius(np.abs(D))
     _, group = np.unique(np.round(np.log(tau), 12), return_inverse=True)
     count = int(group.max()) + 1
-    below, angles = 0.0, np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
+    below, angles = 0.0, np.linspace(-np.pi, np.pi, 33)
     # One phase may always be zero: turning all together turns the eigenvalues only.
     for start in np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, (1 if count == 1 else 8 * count, count)):
         phase = start.copy()
         best = _radius(D * np.exp(1j * phase[group]))
-        for _ in range(4 if count > 1 else 0):
+        # Around the circle first, then nearer and nearer to the best angle.
+        for closer in range(10 if count > 1 else 0):
             for i in range(1, count):
                 tries = np.repeat(phase[None, :], angles.size, axis=0)
-                tries[:, i] = phase[i] + angles
+                tries[:, i] = phase[i] + angles / 8.0**closer
                 sizes = np.abs(np.linalg.eigvals(D * np.exp(1j * tries[:, group])[:, None, :])).max(axis=1)
                 phase, best = tries[np.argmax(sizes)], float(sizes.max())
         below = max(below, best)

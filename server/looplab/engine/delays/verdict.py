@@ -191,8 +191,8 @@ def delay_verdict(system: DelaySystem) -> Verdict:
     if not in_loops(system).any():
         return verdict_from_poles(rightmost_poles(system).poles, "pole", "system")
     below, _ = echo(system)
-    if below >= 1.0 - 1e-12:
-        where = "right of the imaginary axis" if below > 1.0 + 1e-12 else "at the imaginary axis"
+    if below >= 1.0 - 1e-9:
+        where = "right of the imaginary axis" if below > 1.0 + 1e-9 else "at the imaginary axis"
         return Verdict(
             "unstable",
             False,
