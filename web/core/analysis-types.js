@@ -90,7 +90,6 @@
  * @property {Formula | null} system
  * @property {Formula | null} minimal
  * @property {number | null} minimal_order
- * @property {Matrices | null} realization
  * @property {{pole: Complex, zero: Complex, distance: number, stable: boolean}[]} cancelled
  * @property {number | null} closest_kept
  * @property {string | null} reason
@@ -103,6 +102,7 @@
  *   controllability: RankAnswer, observability: RankAnswer,
  *   modes: {pole: Complex, stable: boolean, controllable: boolean, observable: boolean, sigma_controllable: number, sigma_observable: number}[],
  *   stabilizable: boolean, detectable: boolean, minimal: boolean,
+ *   minimal_realization: Matrices & {order: number, removed: {pole: Complex, hidden_from: "input" | "output", stable: boolean}[], tolerance: number, smallest_kept: number | null, largest_removed: number | null},
  *   gramians: {controllability: number[][] | null, observability: number[][] | null, hankel_singular_values: number[] | null, reason: string | null},
  *   transfer_functions: ChannelAnswer[],
  * }} StateSpaceAnswer

@@ -13,6 +13,8 @@ export function stateOf({ plant, controller, horizon, sliders }) {
   const { form, Kc, tau_I, tau_D, alpha, action } = controller;
   return {
     plant,
+    actuator: "",
+    sensor: "",
     horizon,
     controller: {
       type: typeOf(tau_I !== null, Boolean(tau_D)),

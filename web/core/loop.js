@@ -24,9 +24,11 @@ export function controllerJson(controller) {
   return { type: "pid", form, Kc, tau_I, tau_D, alpha, beta, action };
 }
 
-/** @param {Pick<State, "plant" | "controller">} state */
-export function loopOf({ plant, controller }) {
-  return { plant, controller: controllerJson(controller) };
+/** @param {Pick<State, "plant" | "controller" | "actuator" | "sensor">} state */
+export function loopOf({ plant, controller, actuator, sensor }) {
+  /** @param {string} text */
+  const typed = (text) => (text.trim() === "" ? null : { type: "expr", text });
+  return { plant, controller: controllerJson(controller), actuator: typed(actuator), sensor: typed(sensor) };
 }
 
 /** @param {Pick<ControllerState, "Kc" | "tau_I" | "tau_D">} controller */

@@ -133,6 +133,8 @@ export function defaultState() {
   return {
     plant: expr("1/(s+1)^3"),
     controller: { ...DEFAULT_CONTROLLER },
+    actuator: "",
+    sensor: "",
     horizon: null,
     view: { signal: "setpoint", show: [], analyses: startingAnalyses() },
   };

@@ -60,7 +60,7 @@ export function startSession(store, api, { onStatus = () => {} } = {}) {
     const judged = new Set([...whole.want, "verdict", "metrics"]);
     for (const name of timed) judged.delete(name);
     const figures = await api.loop({ ...whole, want: [...judged] });
-    const plant = JSON.stringify(ask.state.plant);
+    const plant = JSON.stringify([ask.state.plant, ask.state.actuator, ask.state.sensor]);
     const verdict = figures.panels.verdict ?? answers.panels.verdict;
     const suits = verdict?.closed_loop_stable ? settledHorizon(figures.panels.metrics ?? answers.panels.metrics, axis.plant === plant ? axis.horizon : null) : null;
     /** @param {number | null} horizon */

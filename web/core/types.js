@@ -31,6 +31,8 @@
  * @typedef {object} Design
  * @property {System} plant
  * @property {ControllerState} controller
+ * @property {string} actuator  A(s) as text between controller and plant; empty for none
+ * @property {string} sensor  H(s) as text between plant and controller; empty for none
  * @property {number | null} horizon  time axis of the step responses; null lets the server choose
  */
 
@@ -74,6 +76,7 @@
  * @typedef {object} StepSignal
  * @property {Numbers} y
  * @property {Numbers} u
+ * @property {Numbers | null} y_m  what the sensor makes of y; null without a sensor
  * @property {number | null} final_y
  * @property {number | null} truncated_at
  * @property {string | null} truncated_reason
@@ -244,6 +247,8 @@
  * @property {string} time_unit
  * @property {SystemText} plant
  * @property {SystemText} controller
+ * @property {SystemText | null} actuator
+ * @property {SystemText | null} sensor
  * @property {PanelName[]} unchanged
  * @property {Panels} panels
  */

@@ -12,7 +12,7 @@ const MATRICES = /** @type {const} */ (["A", "B", "C", "D"]);
 const FORMS = ["ideal", "series", "parallel"];
 
 /** @param {State} state @returns {string} without the leading "?" */
-export function toQuery({ plant, controller, horizon, view }) {
+export function toQuery({ plant, controller, actuator, sensor, horizon, view }) {
   const query = new URLSearchParams();
   if (plant.type === "expr") query.set("plant", plant.text);
   else {
@@ -28,6 +28,8 @@ export function toQuery({ plant, controller, horizon, view }) {
   if (controller.alpha !== 0.1) query.set("alpha", toInput(controller.alpha));
   if (controller.beta !== 1) query.set("beta", toInput(controller.beta));
   if (controller.action !== "reverse") query.set("action", controller.action);
+  if (actuator.trim() !== "") query.set("actuator", actuator);
+  if (sensor.trim() !== "") query.set("sensor", sensor);
   if (horizon !== null) query.set("horizon", toInput(horizon));
   if (view.signal !== "setpoint") query.set("signal", view.signal);
   if (view.show.length > 0) query.set("show", view.show.join(","));
@@ -38,13 +40,13 @@ export function toQuery({ plant, controller, horizon, view }) {
 
 /**
  * What the query says, laid over `fallback`; anything it does not say well is left as it was.
- * @param {string} text
+ * @param {string} search
  * @param {State} fallback
  * @param {string[]} plots  names that `show` may hold
  * @returns {State}
  */
-export function fromQuery(text, fallback, plots) {
-  const query = new URLSearchParams(text);
+export function fromQuery(search, fallback, plots) {
+  const query = new URLSearchParams(search);
   /** @param {string} name @param {number} otherwise @param {(v: number) => boolean} [ok] */
   const number = (name, otherwise, ok = (v) => v > 0) => {
     const raw = query.get(name);
@@ -74,8 +76,13 @@ export function fromQuery(text, fallback, plots) {
     show: query.has("show") ? [...new Set((query.get("show") ?? "").split(","))].filter((name) => plots.includes(name)) : fallback.view.show,
     analyses: analysesFromQuery(query),
   };
+  /** @param {"actuator" | "sensor"} name */
+  const text = (name) => {
+    const value = query.get(name);
+    return value !== null && value.length <= MAX_TEXT ? value : fallback[name];
+  };
   const horizon = query.has("horizon") ? number("horizon", 0) || null : fallback.horizon;
-  return { plant: plantOf(query, number) ?? fallback.plant, controller, horizon, view };
+  return { plant: plantOf(query, number) ?? fallback.plant, controller, actuator: text("actuator"), sensor: text("sensor"), horizon, view };
 }
 
 /**

@@ -8,13 +8,14 @@ import { ANALYSES, PLOTS, SHOWN_NARROW, SHOWN_WIDE, takesRow, VIEW_IDS } from ".
 import { sentence } from "../core/format.js";
 import { defaultState } from "../core/presets.js";
 import { startSession } from "../core/session.js";
-import { createStore } from "../core/store.js";
+import { createStore, designOf } from "../core/store.js";
 import { fromQuery, toQuery } from "../core/url.js";
 import "../components/site-header.js";
 import { toast } from "../components/status-toast.js";
 import * as actionsBar from "../panels/actions-bar.js";
 import * as bode from "../panels/bode.js";
 import * as controllerCard from "../panels/controller-card.js";
+import * as instrumentsCard from "../panels/instruments-card.js";
 import * as laplace from "../panels/laplace.js";
 import * as loopDiagram from "../panels/loop-diagram.js";
 import * as lowOrder from "../panels/low-order.js";
@@ -76,7 +77,7 @@ const rail = place("rail");
 loopDiagram.mount(rail, store, api);
 // On a narrow page the sliders should be the first thing under the plot.
 plantCard.mount(rail, store, api, { open: !NARROW.matches });
-for (const panel of [controllerCard, tuneCard, testCard]) panel.mount(rail, store, api);
+for (const panel of [controllerCard, instrumentsCard, tuneCard, testCard]) panel.mount(rail, store, api);
 viewBar.mount(place("views"), store, api, { narrow: () => NARROW.matches, plots: PLOTS, analyses: ANALYSES });
 actionsBar.mount(place("actions"), store, api);
 
@@ -145,17 +146,20 @@ NARROW.addEventListener("change", () => {
 
 addEventListener("popstate", () => {
   const state = fromQuery(location.search, fallback, VIEW_IDS);
-  store.set({ plant: state.plant, controller: state.controller, horizon: state.horizon });
+  store.set(designOf(state));
 });
 
 layOut();
+
+/** Whether a card of the rail shows this error beside the field it is about. @param {any} error */
+const saidInPlace = (error) => /plant|actuator|sensor/.test(String(error.path ?? ""));
 
 let troubled = false;
 startSession(store, api, {
   onStatus(status, error) {
     if (status === "waiting") toast().say(`${error.message} Trying again…`, { lasting: true });
-    else if (status === "error" && !String(error.path ?? "").includes("plant")) toast().say([error.message, error.hint].map(sentence).filter(Boolean).join(" "), { lasting: true });
+    else if (status === "error" && !saidInPlace(error)) toast().say([error.message, error.hint].map(sentence).filter(Boolean).join(" "), { lasting: true });
     else if (troubled) toast().hush();
-    troubled = status !== "ok" && !(status === "error" && String(error.path ?? "").includes("plant"));
+    troubled = status !== "ok" && !(status === "error" && saidInPlace(error));
   },
 });

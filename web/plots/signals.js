@@ -17,6 +17,7 @@
 export const SIGNALS = {
   r: { label: "r", name: "setpoint", dash: "dash", width: 1.5 },
   y: { label: "y", name: "process output", dash: "solid", width: 2.5 },
+  y_m: { label: "yₘ", name: "measured output", dash: "dash", width: 1.75 },
   u: { label: "u", name: "controller output", dash: "solid", width: 2 },
   d: { label: "d", name: "load disturbance", dash: "dashdot", width: 2 },
   n: { label: "n", name: "measurement noise", dash: "dot", width: 1.5 },

@@ -11,6 +11,7 @@ from looplab import __version__
 from looplab.api import errors, pages
 from looplab.api.limits import BodyLimit
 from looplab.api.routes import (
+    connect,
     frequency,
     health,
     labs,
@@ -68,7 +69,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.workers = workers
     v1 = APIRouter(prefix="/api/v1")
     for module in (
-        *(health, loop, frequency, root_locus, tune, laplace, labs, routh, stability, response, state_space),
+        *(health, loop, frequency, root_locus, tune, laplace, labs, routh, stability, response, state_space, connect),
         *(plants, models),
     ):
         v1.include_router(module.router)

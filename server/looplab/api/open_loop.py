@@ -17,10 +17,10 @@ from looplab.schemas import Loop, Model, System, located
 
 
 class OpenLoopRequest(Model):
-    """The open loop L: a system of its own, or plant and controller."""
+    """The open loop L: a system of its own, or that of a loop."""
 
     system: System | None = Field(default=None, description="L(s) itself, proper.")
-    loop: Loop | None = Field(default=None, description="Plant and controller; L = P C.")
+    loop: Loop | None = Field(default=None, description="A loop; L = C A P H.")
 
     @model_validator(mode="after")
     def _one(self) -> OpenLoopRequest:

@@ -17,7 +17,7 @@ class SystemText(Answer):
 
 
 class PlantText(SystemText):
-    """The plant, with its order and dead time [time]."""
+    """A plant (or another part of the loop), with its order and dead time [time]."""
 
     order: int
     theta: float
@@ -34,17 +34,18 @@ class VerdictPanel(Answer):
 
 
 class StepResponse(Answer):
-    """y and u after a unit step; shorter than t where the response was cut."""
+    """y and u after a unit step, shorter than t where the response was cut; y_m is what a sensor makes of y."""
 
     y: Numbers
     u: Numbers
+    y_m: Numbers | None
     final_y: float | None
     truncated_at: float | None
     truncated_reason: str | None
 
 
 class StepPanel(Answer):
-    """Responses to unit steps of the setpoint and of the load at the plant input."""
+    """Responses to unit steps of the setpoint and of the load."""
 
     key: str
     horizon: float
@@ -324,5 +325,8 @@ class LoopAnswer(Answer):
     time_unit: str
     plant: PlantText
     controller: SystemText
+    actuator: PlantText | None
+    sensor: PlantText | None
+    disturbance: PlantText | None
     unchanged: list[str]
     panels: LoopPanels

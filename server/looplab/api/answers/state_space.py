@@ -60,8 +60,26 @@ class CancelledMode(Answer):
     stable: bool
 
 
-class RealizationAnswer(Answer):
-    """State equations of one channel."""
+class RemovedModeAnswer(Answer):
+    """A mode that a minimal realisation leaves out."""
+
+    pole: ComplexPair
+    hidden_from: Annotated[Literal["input", "output"], Field(description="No input moves it, or no output shows it.")]
+    stable: bool
+
+
+class RemovedModes(Answer):
+    """What a minimal realisation leaves out, and the singular values on either side of the tolerance."""
+
+    order: int
+    removed: list[RemovedModeAnswer]
+    tolerance: float
+    smallest_kept: float | None
+    largest_removed: float | None
+
+
+class MinimalRealizationAnswer(RemovedModes):
+    """A model with the same transfer matrix in which no mode hides."""
 
     A: Matrix
     B: Matrix
@@ -79,7 +97,6 @@ class ChannelAnswer(Answer):
     system: SystemText | None
     minimal: SystemText | None
     minimal_order: int | None
-    realization: Annotated[RealizationAnswer | None, Field(description="Of the minimal transfer function.")]
     cancelled: list[CancelledMode]
     cancel_tolerance: float
     closest_kept: Annotated[float | None, Field(description="Distance of the closest zero and pole that were kept.")]
@@ -103,5 +120,6 @@ class StateSpaceAnswer(Answer):
     stabilizable: bool
     detectable: bool
     minimal: bool
+    minimal_realization: MinimalRealizationAnswer
     gramians: GramiansAnswer
     transfer_functions: list[ChannelAnswer]

@@ -13,6 +13,7 @@ def _response(response: Response) -> dict[str, Any]:
     return {
         "y": response.y.copy(),
         "u": response.u.copy(),
+        "y_m": None if response.y_m is None else response.y_m.copy(),
         "final_y": response.final_y,
         "truncated_at": response.truncated_at,
         "truncated_reason": response.truncated_reason,
@@ -20,7 +21,7 @@ def _response(response: Response) -> dict[str, Any]:
 
 
 def step(context: LoopContext) -> dict[str, Any]:
-    """y and u after unit steps of setpoint and load."""
+    """y and u, and what a sensor makes of y, after unit steps of setpoint and load."""
     result = context.step
     setpoint, load = _response(result.setpoint), _response(result.load)
     if not context.verdict.closed_loop_stable:

@@ -151,7 +151,7 @@ def _region(loop: FeedbackLoop, tau_I: list[float], negative: bool) -> dict[str,
             hint='{"type": "pid", "Kc": 1, "tau_I": 1}',
         )
     with located("loop"):
-        region = pi_region(loop.plant, tau_I, negative)
+        region = pi_region(loop.path, tau_I, negative)
     curve = region.boundary
     there = np.isfinite(curve.tau_I) & (negative | (curve.Kc > 0))
     return {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -37,12 +37,14 @@ def _log(system: TransferFunction, omega: FloatArray) -> npt.NDArray[np.complex1
 def gang_of_six(loop: FeedbackLoop, omega: FloatArray) -> GangOfSix:
     r"""Magnitudes of the six transfer functions of a loop with two degrees of freedom, dead time exact.
 
-    .. math:: S = \frac{1}{1 + PC}, \quad PS, \quad CS, \quad T = PCS, \qquad
+    .. math:: S = \frac{1}{1 + L}, \quad PS, \quad CS, \quad T = LS, \qquad
         r \to u:\; C\mathcal F S, \quad r \to y:\; T\mathcal F, \qquad
         u = C(\mathcal F r - y), \quad \mathcal F = \frac{C + F}{C}
 
     The book's loop filters the setpoint by calF. Here u = C (r - y) + F r with F = Kc (beta - 1), which is the same
     with calF = 1 + F/C: the two functions more are (C + F) S and P (C + F) S. With beta = 1 they are CS and T.
+    With actuator A and sensor H, L = C A P H, PS is the load's way to y (Gd S where the loop has a disturbance model),
+    T leads to the measured y_m, and the last to y itself: A P (C + F) S.
 
     Parameters
     ----------
@@ -58,11 +60,12 @@ def gang_of_six(loop: FeedbackLoop, omega: FloatArray) -> GangOfSix:
     ----------
     .. [1] K. J. Astrom, R. M. Murray, Feedback Systems, 2nd ed., Princeton 2021, sec. 12.1.
     """
-    P, C = _log(loop.plant, omega), _log(loop.C, omega)
+    C, path = _log(loop.C, omega), _log(loop.path, omega)
+    load, forward = (log_magnitude(system, omega) for system in (loop.load_path, loop.forward))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        S = -np.log(np.abs(1.0 + np.exp(P + C)))
+        S = -np.log(np.abs(1.0 + np.exp(path + C)))
         CF = C.real if not loop.feedforward else np.log(np.abs(np.exp(C) + loop.feedforward))
-        return GangOfSix(omega, S, S + P.real, S + C.real, S + P.real + C.real, S + CF, S + P.real + CF)
+        return GangOfSix(omega, S, S + load, S + C.real, S + path.real + C.real, S + CF, S + forward + CF)
 
 
 @dataclass(frozen=True)
@@ -93,8 +96,8 @@ def gang_steps(loop: FeedbackLoop, horizon: float, points: int = 500) -> GangSte
 
     .. math:: y_S(t) = 1 - y_T(t)
 
-    T and CS are y and u after a setpoint step with beta = 1, TF and CFS the same with the loop's beta, PS is y after
-    a load step, and S is the error of T.
+    T and CS are y (as measured) and u after a setpoint step with beta = 1, TF and CFS are y and u with the loop's beta,
+    PS is y after a load step, and S is the error of T.
 
     Parameters
     ----------
@@ -113,7 +116,8 @@ def gang_steps(loop: FeedbackLoop, horizon: float, points: int = 500) -> GangSte
     .. [1] K. J. Astrom, R. M. Murray, Feedback Systems, 2nd ed., Princeton 2021, sec. 12.1.
     """
     weighted = closed_loop_step(loop, horizon, points)
-    plain = weighted if not loop.feedforward else closed_loop_step(FeedbackLoop(loop.plant, loop.C), horizon, points)
+    plain = weighted if not loop.feedforward else closed_loop_step(replace(loop, controller=loop.C), horizon, points)
     T, filtered, load = plain.setpoint, weighted.setpoint, weighted.load
+    measured = T.y if T.y_m is None else T.y_m
     reason = T.truncated_reason or filtered.truncated_reason or load.truncated_reason
-    return GangSteps(weighted.t, 1.0 - T.y, load.y, T.u, T.y, filtered.u, filtered.y, reason)
+    return GangSteps(weighted.t, 1.0 - measured, load.y, T.u, measured, filtered.u, filtered.y, reason)
