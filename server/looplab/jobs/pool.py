@@ -91,10 +91,9 @@ class WorkerPool:
         await self._admission()
         self._inside += 1
         try:
-            pool = self._running()
-            if pool is None:
-                # Starting processes takes a while: not in the event loop.
-                pool = await asyncio.to_thread(self._started)
+            running = self._running()
+            # Starting processes takes a while: not in the event loop.
+            pool = await asyncio.to_thread(self._started) if running is None else running
             task = pool.schedule(within_budget, args=(self.budget, function, *args), timeout=self.deadline)
             future = asyncio.wrap_future(task)
             done, _ = await asyncio.wait({future}, timeout=LONGEST_WAIT + self.deadline)
