@@ -35,6 +35,8 @@ export class PlantSchematic extends HTMLElement {
   #textSize = 0;
   #describing = 0;
   #speaking = 0;
+  /** What was read when the drawing was met is not spoken again. */
+  #met = false;
   #onCalm = () => this.#settle();
 
   connectedCallback() {
@@ -130,6 +132,8 @@ export class PlantSchematic extends HTMLElement {
   #fitText() {
     const width = this.#svg.getBoundingClientRect().width;
     const [wide] = this.#drawing?.view ?? [];
+    // what is not shown cannot be measured: it is when it comes into sight
+    if (!width) this.#textSize = 0;
     if (!width || !wide) return;
     const rem = parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
     const scale = width / wide;
@@ -153,7 +157,8 @@ export class PlantSchematic extends HTMLElement {
 
   /** Spoken once the values have come to rest, not while they move. */
   #speak() {
-    setText(this.#status, this.#description);
+    if (this.#met) setText(this.#status, this.#description);
+    this.#met = true;
   }
 }
 

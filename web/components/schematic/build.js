@@ -49,9 +49,10 @@ function buildRepeated(shape, scene, path) {
   scene.path = path;
   const repeat = shape?.["repeat"];
   if (!repeat) return buildOne(shape, scene, path) ?? [];
-  const { count, index = "i", first = 1, step = [0, 0] } = repeat;
-  if (!Number.isInteger(count) || count < 1 || count > 100 || !step.every?.(Number.isFinite)) {
-    scene.complain("repeat", "needs a count from 1 to 100 and a step of two numbers");
+  const { count, index = "i", first = 1, step } = repeat;
+  const good = Number.isInteger(count) && count >= 1 && count <= 100 && Number.isInteger(first) && /^[a-z]$/.test(index) && Array.isArray(step) && step.every(Number.isFinite);
+  if (!good) {
+    scene.complain("repeat", "needs a count from 1 to 100, a step of two numbers, and one letter as its index");
     return [];
   }
   const outer = scene.index;
@@ -91,9 +92,9 @@ function buildOne(shape, scene, path) {
     scene.path = path;
     return [place(shape, scene, nodes, bounds)];
   } catch (error) {
-    if (!(error instanceof ShapeError)) throw error;
     scene.path = path;
-    scene.complain(error.property, error.message);
+    if (error instanceof ShapeError) scene.complain(error.property, error.message);
+    else scene.complain("", `could not be drawn (${String(error)})`);
     return null;
   }
 }

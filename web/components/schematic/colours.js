@@ -43,3 +43,8 @@ export function colourAt(scale, part) {
   const share = Math.round(100 * (place - low));
   return `color-mix(in oklab, ${stops[low]} ${100 - share}%, ${stops[low + 1]})`;
 }
+
+/** A line of the same hue that stands out on a colour: a surface, the dashes of a flow. @param {string} colour */
+export function onColour(colour) {
+  return colour === "none" ? "var(--ink-soft)" : `color-mix(in oklab, ${colour} 45%, var(--ink))`;
+}

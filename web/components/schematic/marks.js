@@ -3,7 +3,7 @@
 /** @import {Scene, Shape} from "./scene.js" */
 
 import { formatFixed, formatNumber, UNDEFINED } from "../../core/format.js";
-import { svg } from "../dom.js";
+import { set, svg } from "../dom.js";
 import { arrowHead, boundsOf, roundedPath } from "./geometry.js";
 import { nameSpans, splitName } from "./names.js";
 import { ShapeError } from "./scene.js";
@@ -71,7 +71,8 @@ export function ruler(shape, scene) {
   const marks = [];
   let d = `M0 0H${length}`;
   for (let i = 0; low + i * step <= high + 1e-9 * step; i += 1) {
-    const value = low + i * step;
+    // 3 steps of 0.4 from -1.2 are 0, not 2e-16
+    const value = Math.abs(low + i * step) < 1e-9 * step ? 0 : low + i * step;
     const x = (length * (value - low)) / (high - low);
     d += `M${x} 0v6`;
     marks.push(svg("text", { x, y: 9, class: "ruler-number" }, String(Number(value.toPrecision(6))).replace("-", "−")));
@@ -88,16 +89,38 @@ export function text(shape, scene) {
   return { nodes: [node], box: [0, 0, 0, 0] };
 }
 
+/** Which a text's computed length leaves out, in em. */
+const SPACE_BEFORE_VALUE = 0.45;
+const SPACE_BEFORE_UNIT = 0.25;
+
+/**
+ * How far a chip must move sideways so that nothing of it is cut off, whatever the size of the text.
+ * @param {SVGElement} node @param {number} left @param {number} right
+ */
+function intoView(node, left, right) {
+  const picture = /** @type {SVGSVGElement | null} */ (node.ownerSVGElement);
+  const outer = /** @type {SVGGraphicsElement | null} */ (/** @type {unknown} */ (node.parentNode));
+  const [toScreen, ofView] = [outer?.getCTM(), picture?.getCTM()];
+  if (!picture || !toScreen || !ofView) return 0;
+  const place = ofView.inverse().multiply(toScreen);
+  const { x, width } = picture.viewBox.baseVal;
+  const [start, end] = [place.e + left, place.e + right];
+  return Math.max(x + 2 - start, Math.min(0, x + width - 2 - end));
+}
+
 /** Name, value and unit on a chip that grows where it must and never shrinks: nothing jumps. @param {Shape} shape @param {Scene} scene */
 export function readout(shape, scene) {
   const signal = shape["signal"];
   if (typeof signal !== "string") throw new ShapeError("signal", "must be the name of a signal");
+  if (typeof (shape["name"] ?? signal) !== "string") throw new ShapeError("name", "must be a text");
   const { digits = 3, decimals, times = 1, align = "start" } = shape;
   const name = shape["name"] ?? signal;
   const { spans, dy } = nameSpans(name);
-  const value = svg("tspan", { class: "readout-value", dx: "0.45em", dy });
-  const unit = svg("tspan", { class: "readout-unit", dx: "0.25em" });
-  const words = svg("text", { class: "readout-text", "text-anchor": align }, ...spans, value, unit);
+  const value = svg("tspan", { class: "readout-value", dx: `${SPACE_BEFORE_VALUE}em`, dy });
+  const unit = svg("tspan", { class: "readout-unit", dx: `${SPACE_BEFORE_UNIT}em` });
+  const bare = shape["bare"] === true;
+  if (bare) set(value, { dx: null, dy: null });
+  const words = svg("text", { class: "readout-text", "text-anchor": align }, ...(bare ? [] : spans), value, unit);
   const chip = svg("rect", { class: "chip" });
   const node = svg("g", { class: "readout" }, chip, words);
 
@@ -105,13 +128,15 @@ export function readout(shape, scene) {
   let width = 0;
   let length = 0;
   const fit = () => {
-    const wanted = /** @type {SVGTextElement} */ (words).getComputedTextLength();
-    if (!wanted) return;
+    const measured = /** @type {SVGTextElement} */ (words).getComputedTextLength();
+    if (!measured) return;
+    const wanted = measured + ((bare ? 0 : SPACE_BEFORE_VALUE) + (unit.textContent ? SPACE_BEFORE_UNIT : 0)) * height;
     const pad = 0.5 * height;
     width = Math.max(width, wanted + 2 * pad);
     const left = align === "start" ? 0 : align === "end" ? -width : -width / 2;
     const anchor = align === "start" ? pad : align === "end" ? -pad : 0;
     words.setAttribute("x", String(anchor));
+    node.setAttribute("transform", `translate(${intoView(node, left, left + width)} 0)`);
     for (const [attribute, size] of Object.entries({ x: left, y: -0.85 * height, width, height: 1.7 * height, rx: 0.4 * height })) chip.setAttribute(attribute, String(size));
   };
   const show = (/** @type {number | undefined} */ now) => {
@@ -123,14 +148,14 @@ export function readout(shape, scene) {
     length = shown.length;
     fit();
   };
-  const name2unit = (/** @type {Record<string, string>} */ units) => {
+  const setUnit = (/** @type {Record<string, string>} */ units) => {
     unit.textContent = shape["unit"] ?? units[signal] ?? "";
     width = 0;
     fit();
   };
-  name2unit({});
-  scene.watch(signal, "readout", show);
-  scene.onUnits.push(name2unit);
+  setUnit({});
+  scene.watch(signal, "signal", show);
+  scene.onUnits.push(setUnit);
   scene.onTextSize.push((size) => {
     height = size;
     width = 0;
@@ -148,7 +173,10 @@ export function instrument(shape, scene) {
   const r = scene.size(shape, "r", 18);
   const nodes = [svg("circle", { r, class: "body" })];
   if (shape["mount"] === "panel") nodes.push(svg("path", { d: `M${-r} 0H${r}`, class: "thin" }));
-  const letters = svg("text", { class: "letters", y: shape["mount"] === "panel" ? -0.32 * r : 0, "font-size": 0.78 * r }, String(shape["letters"] ?? ""));
+  const words = String(shape["letters"] ?? "");
+  // four letters are as wide as the circle allows; a panel's stand above its line
+  const size = Math.min(shape["mount"] === "panel" ? 0.66 * r : 0.78 * r, (2.1 * r) / Math.max(1, words.length));
+  const letters = svg("text", { class: "letters", y: shape["mount"] === "panel" ? -0.42 * r : 0, "font-size": size }, words);
   return { nodes: [...nodes, letters], box: [-r, -r, 2 * r, 2 * r] };
 }
 

@@ -50,7 +50,7 @@ export function car(shape, scene) {
   }
   const node = svg(
     "g",
-    { transform: `scale(${scale})` },
+    { transform: `scale(${scale})`, style: `--scale: ${scale}` },
     svg("path", { d: "M-55 -12Q-60 -12 -60 -17L-59 -27Q-58 -32 -51 -33L-42 -34C-32 -47 -26 -51 -14 -51H4C14 -51 20 -45 31 -35C46 -33 57 -31 59 -23L60 -16Q60 -12 56 -12Z", class: "car-body" }),
     svg("path", { d: "M-33 -35C-26 -43 -22 -46 -13 -46H-5V-35ZM1 -46H4C11 -46 15 -42 22 -35H1Z", class: "window" }),
     svg("path", { d: "M-2 -33V-17M8 -29h6M53 -25h5", class: "thin" }),
@@ -80,7 +80,7 @@ export function arrow(shape, scene) {
   scene.number(shape, "length", 0, (length) => {
     const way = Math.sign(length);
     const whole = Math.abs(length);
-    if (whole < 0.5) {
+    if (whole < 2) {
       path.setAttribute("d", "");
       return;
     }
@@ -113,5 +113,5 @@ export function person(shape, scene) {
   const core = svg("g", {}, svg("ellipse", { cy: -183, rx: 10, ry: 11 }), svg("path", { d: "M-17 -138Q0 -145 17 -138Q20 -112 15 -90Q0 -82 -15 -90Q-20 -112 -17 -138Z" }));
   scene.colour(shape, "skin", "none", (colour) => (shell.style.stroke = colour === "none" ? "var(--paper)" : colour));
   scene.colour(shape, "fill", "none", (colour) => (core.style.fill = colour));
-  return { nodes: [svg("g", { transform: `scale(${scale})` }, outer, shell, core)], box: [-50 * scale, -200 * scale, 100 * scale, 200 * scale] };
+  return { nodes: [svg("g", { transform: `scale(${scale})`, style: `--scale: ${scale}` }, outer, shell, core)], box: [-50 * scale, -200 * scale, 100 * scale, 200 * scale] };
 }

@@ -3,6 +3,7 @@
 /** @import {Scene, Shape} from "./scene.js" */
 
 import { svg } from "../dom.js";
+import { onColour } from "./colours.js";
 import { arrowHead, boundsOf, roundedPath, towards } from "./geometry.js";
 
 const DASH = 18;
@@ -14,14 +15,15 @@ export function pipe(shape, scene) {
   const points = scene.points(shape);
   const size = scene.size(shape, "size", 10);
   const headed = shape["arrow"] !== false;
+  // the head of a wide pipe is wider than the pipe, and no more
+  const headSize = Math.max(0.85 * size, Math.min(size, 12));
   const d = roundedPath(points, 1.4 * size);
   const wall = svg("path", { d, class: "pipe-wall", "stroke-width": size });
   const inside = svg("path", { d, class: "pipe-inside", "stroke-width": size - 3.5 });
   const dashes = svg("path", { d, class: "pipe-flow", "stroke-dasharray": `${0.4 * DASH} ${0.6 * DASH}` });
   const last = points[points.length - 1];
   const before = points[points.length - 2];
-  const tip = towards(last, before, -1.5 * size);
-  const head = headed ? svg("path", { d: arrowHead(before, tip, 1.7 * size), class: "arrow-head" }) : null;
+  const head = headed ? svg("path", { d: arrowHead(before, towards(last, before, -1.5 * headSize), 1.7 * headSize), class: "arrow-head" }) : null;
   const run = scene.motion(dashes, { strokeDashoffset: [String(DASH), "0"] }, (1000 * DASH) / SPEED);
   scene.number(shape, "flow", 0.5, (flow) => {
     const strength = Math.min(1, Math.abs(flow));
@@ -29,7 +31,10 @@ export function pipe(shape, scene) {
     run(strength < 1e-3 ? 0 : Math.sign(flow) * (0.2 + 0.8 * strength));
     if (head) head.setAttribute("opacity", strength < 1e-3 ? "0.3" : "1");
   });
-  scene.colour(shape, "fill", "water", (colour) => (inside.style.stroke = colour));
+  scene.colour(shape, "fill", "water", (colour) => {
+    inside.style.stroke = colour;
+    dashes.style.stroke = onColour(colour);
+  });
   const [x, y, w, h] = boundsOf(points);
   return { nodes: [wall, inside, dashes, ...(head ? [head] : [])], box: [x - size / 2, y - size / 2, w + size, h + size] };
 }
@@ -59,7 +64,10 @@ export function stream(shape, scene) {
     run(strength);
     draw();
   });
-  scene.colour(shape, "fill", "water", (colour) => (water.style.fill = colour));
+  scene.colour(shape, "fill", "water", (colour) => {
+    water.style.fill = colour;
+    dashes.style.stroke = onColour(colour);
+  });
   return { nodes: [water, dashes], box: [-size / 2, 0, size, 20] };
 }
 
@@ -70,7 +78,8 @@ export function valve(shape, scene) {
   const [a, b] = [s / 2, 0.34 * s];
   const body = svg("path", { d: `M${-a} ${-b}L0 0L${-a} ${b}ZM${a} ${-b}L0 0L${a} ${b}Z`, class: "body" });
   const fill = svg("path", { d: `M${-a} ${-b}L0 0L${-a} ${b}ZM${a} ${-b}L0 0L${a} ${b}Z`, class: "valve-open" });
-  const nodes = [body, fill];
+  // what runs in the line ends at the valve
+  const nodes = [svg("rect", { x: -a, y: -b, width: s, height: 2 * b, class: "vessel-inside" }), body, fill];
   const top = -1.02 * s;
   const travel = 0.26 * s;
   const stem = svg("path", { class: "rod-line" });
@@ -87,7 +96,7 @@ export function valve(shape, scene) {
     const opening = Math.min(1, Math.max(0, value));
     const lift = opening * travel;
     fill.setAttribute("opacity", String(Math.round(100 * opening) / 100));
-    stem.setAttribute("d", `M0 ${-lift * 0.4}V${actuator === "hand" ? -0.55 * s - lift : top}`);
+    stem.setAttribute("d", `M0 0V${actuator === "hand" ? -0.55 * s - lift : top}`);
     mark.setAttribute("d", `M${-0.14 * s} ${-0.42 * s - lift}H${0.14 * s}`);
     wheel?.setAttribute("transform", `translate(0 ${-0.55 * s - lift})`);
   });
@@ -144,7 +153,7 @@ export function regulator(shape, scene) {
   });
   const node = svg(
     "g",
-    { transform: `scale(${s})` },
+    { transform: `scale(${s})`, style: `--scale: ${s}` },
     svg("path", { d: "M-13 -60H13V-36H26Q30 -36 30 -32V-22Q30 -18 26 -18H20V-9H32V9H20V22H-20V9H-32V-9H-20V-18H-26Q-30 -18 -30 -22V-32Q-30 -36 -26 -36H-13Z", class: "body" }),
     // the seat: a wall from the inlet's roof to the outlet's floor, with the hole that the plug shuts
     svg("path", { d: "M-20 -9H-12V3H-6M6 3H14V9H20", class: "vessel" }),

@@ -70,7 +70,7 @@ export class Scene {
     }
     const { from, to, clamp } = this.#binding(value, property);
     let last = Number.NaN;
-    this.watch(value.signal, property, (signal) => {
+    this.watch(value.signal, `${property}.signal`, (signal) => {
       const part = signal === undefined ? 0.5 : (signal - from[0]) / (from[1] - from[0]);
       const held = clamp ? Math.min(1, Math.max(0, part)) : part;
       const now = to[0] + held * (to[1] - to[0]);
@@ -95,7 +95,7 @@ export class Scene {
     }
     const { from } = this.#binding(value, property);
     let last = "";
-    this.watch(value.signal, property, (signal) => {
+    this.watch(value.signal, `${property}.signal`, (signal) => {
       const part = signal === undefined ? 0.5 : (signal - from[0]) / (from[1] - from[0]);
       const now = colourAt(value.scale, Math.min(1, Math.max(0, part)));
       if (now === undefined) throw new ShapeError(`${property}.scale`, `no scale is called "${value.scale}"`);
@@ -116,10 +116,13 @@ export class Scene {
     return { from, to, clamp };
   }
 
-  /** @param {string} signal @param {string} property @param {(value: number | undefined) => void} apply */
-  watch(signal, property, apply) {
+  /**
+   * Calls `apply` with the value of a signal, now and whenever it changes; undefined while there is none.
+   * @param {string} signal @param {string} place  of its name within the shape @param {(value: number | undefined) => void} apply
+   */
+  watch(signal, place, apply) {
     apply(this.#values.get(signal));
-    if (!this.named.has(signal)) this.named.set(signal, `${this.path}.${property}.signal`);
+    if (!this.named.has(signal)) this.named.set(signal, `${this.path}.${place}`);
     const watchers = this.#watchers.get(signal);
     if (watchers) watchers.push(apply);
     else this.#watchers.set(signal, [apply]);

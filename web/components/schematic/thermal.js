@@ -14,13 +14,14 @@ export function heater(shape, scene) {
   let d = `M0 ${h / 2}`;
   for (let i = 0; i < turns; i += 1) d += `q${pitch / 4} ${-h} ${pitch / 2} 0t${pitch / 2} 0`;
   const glow = svg("path", { d, class: "heater-glow" });
+  const rim = svg("path", { d, class: "heater-case" });
   const wire = svg("path", { d, class: "heater-wire" });
   scene.number(shape, "power", 0.5, (power) => {
     const part = Math.round(100 * Math.min(1, Math.max(0, power)));
-    wire.style.stroke = `color-mix(in oklab, var(--draw-heat) ${part}%, var(--line-strong))`;
+    wire.style.stroke = `color-mix(in oklab, var(--draw-glow) ${part}%, var(--draw-metal))`;
     glow.setAttribute("opacity", String((0.45 * part) / 100));
   });
-  return { nodes: [glow, wire], box: [0, 0, w, h] };
+  return { nodes: [glow, rim, wire], box: [0, 0, w, h] };
 }
 
 /** @param {Shape} shape @param {Scene} scene */

@@ -3,6 +3,7 @@
 /** @import {Scene, Shape} from "./scene.js" */
 
 import { svg, uniqueId } from "../dom.js";
+import { onColour } from "./colours.js";
 
 const JACKET = 11;
 
@@ -46,7 +47,10 @@ export function tank(shape, scene) {
     liquid.setAttribute("height", String(depth));
     surface.setAttribute("d", depth > 0 ? `M0 ${h - depth}H${w}` : "");
   });
-  scene.colour(shape, "fill", "water", (colour) => (liquid.style.fill = colour));
+  scene.colour(shape, "fill", "water", (colour) => {
+    liquid.style.fill = colour;
+    surface.style.stroke = onColour(colour);
+  });
   const o = shape["jacket"] ? JACKET : 0;
   return { nodes: parts, box: [-o, 0, w + 2 * o, h + o] };
 }

@@ -262,13 +262,12 @@ class Readout(Placed):
 
     kind: Literal["readout"]
     signal: Signal
-    name: Caption | None = Field(
-        default=None, description="In place of the signal's own; T_amb is set with a subscript."
-    )
+    name: Caption | None = Field(default=None, description="In place of the signal's; T_amb is set with a subscript.")
     unit: Caption | None = Field(default=None, description="In place of the model's unit.")
     digits: Annotated[int, Field(ge=1, le=6)] = 3
     decimals: Annotated[int, Field(ge=0, le=6)] | None = None
     times: float = Field(default=1.0, description="Factor to the unit shown.")
+    bare: bool = Field(default=False, description="Value and unit only; the name is still read aloud.")
     align: Align = "start"
 
 

@@ -1,8 +1,8 @@
 """What a property of a drawing may be: a constant, or bound to a signal of the model."""
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal
 
-from pydantic import Field, StringConstraints, model_validator
+from pydantic import AfterValidator, Discriminator, Field, StringConstraints, Tag
 
 from looplab.schemas.base import Model
 
@@ -21,36 +21,30 @@ Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 Point = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
 
 
-def _ordered(pair: list[float]) -> None:
+def _spans(pair: list[float]) -> list[float]:
     if pair[0] == pair[1]:
-        raise ValueError("'from' must span a range: its two ends are equal")
+        raise ValueError("must span a range: its two ends are equal")
+    return pair
+
+
+From = Annotated[Pair, AfterValidator(_spans), Field(alias="from", default_factory=lambda: [0.0, 1.0])]
 
 
 class Binding(Model):
     """A number that follows a signal along a straight line, and stops at its ends unless `clamp` is false."""
 
     signal: Signal
-    from_: Annotated[Pair, Field(alias="from", default_factory=lambda: [0.0, 1.0])]
+    from_: From
     to: Pair = Field(default_factory=lambda: [0.0, 1.0])
     clamp: bool = True
-
-    @model_validator(mode="after")
-    def _spans(self) -> Self:
-        _ordered(self.from_)
-        return self
 
 
 class ColourBinding(Model):
     """A colour that follows a signal along a scale: blue to red, or pale to deep."""
 
     signal: Signal
-    from_: Annotated[Pair, Field(alias="from", default_factory=lambda: [0.0, 1.0])]
+    from_: From
     scale: Literal["temperature", "composition"]
-
-    @model_validator(mode="after")
-    def _spans(self) -> Self:
-        _ordered(self.from_)
-        return self
 
 
 ColourName = Literal[
@@ -72,8 +66,18 @@ ColourName = Literal[
     "none",
 ]
 
-Value = float | Binding
-Colour = ColourName | ColourBinding
+
+def _constant_or_bound(value: object) -> str:
+    """Decided by what was given, so that a mistake is told once and not for each way it might have been meant."""
+    return "bound" if isinstance(value, dict | Model) else "constant"
+
+
+Value = Annotated[
+    Annotated[float, Tag("constant")] | Annotated[Binding, Tag("bound")], Discriminator(_constant_or_bound)
+]
+Colour = Annotated[
+    Annotated[ColourName, Tag("constant")] | Annotated[ColourBinding, Tag("bound")], Discriminator(_constant_or_bound)
+]
 
 
 class Repeat(Model):
