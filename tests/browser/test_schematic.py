@@ -3,14 +3,15 @@
 import json
 import math
 from pathlib import Path
+from typing import get_args
 
 import pytest
 from playwright.sync_api import Page, expect
 
 from looplab.schemas.schematic import Schematic
+from looplab.schemas.schematic.values import ColourBinding, ColourName
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-DRAWINGS = sorted((REPOSITORY / "server" / "looplab" / "plants" / "schematics").glob("*.json"))
+DRAWINGS = sorted((Path(__file__).resolve().parents[2] / "server" / "looplab" / "plants" / "schematics").glob("*.json"))
 
 SHOW = """async ([drawing, values, units, width]) => {
   await import("/static/components/plant-schematic.js");
@@ -30,9 +31,8 @@ SHOW = """async ([drawing, values, units, width]) => {
   return element.problems;
 }"""
 SET = "(values) => { document.querySelector('plant-schematic').values = values; }"
-# The pages cut transitions short for those who want less motion; a cut one is not motion.
 RUNNING = """() => document.querySelector("plant-schematic").getAnimations({ subtree: true })
-  .filter((animation) => animation.playState === "running" && !(animation instanceof CSSTransition)).length"""
+  .filter((animation) => animation.playState === "running").length"""
 
 TANK = {
     "title": "A tank",
@@ -159,6 +159,16 @@ def test_the_browser_draws_the_kinds_of_the_schema(page: Page):
     assert set(drawn) == known
 
 
+def test_the_browser_knows_the_colours_of_the_schema(page: Page):
+    scales = get_args(ColourBinding.model_fields["scale"].annotation)
+    fills = [*get_args(ColourName), *({"signal": "T", "scale": scale} for scale in scales)]
+    discs = [{"kind": "disc", "x": 20, "y": 20, "r": 5, "fill": fill} for fill in fills]
+    assert show(page, {"view": [480, 320], "shapes": discs}, {"T": 0.3}) == []
+    # a colour whose token is missing would leave the disc as it is: black, or not filled
+    painted = page.locator(".shape-disc circle").evaluate_all("(all) => all.map((c) => getComputedStyle(c).fill)")
+    assert [fill for fill, colour in zip(fills, painted, strict=True) if colour in ("none", "rgb(0, 0, 0)")] == ["none"]
+
+
 MEASURE = """() => {
   const picture = document.querySelector("plant-schematic svg");
   const frame = picture.getBoundingClientRect();
@@ -167,7 +177,8 @@ MEASURE = """() => {
   const ink = [Math.min(...boxes.map((b) => b.left)) - frame.left, frame.right - Math.max(...boxes.map((b) => b.right)),
     Math.min(...boxes.map((b) => b.top)) - frame.top, frame.bottom - Math.max(...boxes.map((b) => b.bottom))];
   const scale = frame.width / picture.viewBox.baseVal.width;
-  const text = [...picture.querySelectorAll(".readout-text")].map((node) => parseFloat(getComputedStyle(node).fontSize));
+  const words = [...picture.querySelectorAll(".readout-text")];
+  const text = words.map((node) => parseFloat(getComputedStyle(node).fontSize));
   return { width: frame.width, margin: Math.min(...ink), text: Math.min(...text) * scale };
 }"""
 

@@ -1,6 +1,7 @@
 """Drawings are read strictly, and what is wrong is named by its place."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -10,8 +11,8 @@ from looplab.engine.errors import InvalidInput
 from looplab.schemas import json_path
 from looplab.schemas.schematic import Schematic
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-DRAWINGS = sorted((REPOSITORY / "server" / "looplab" / "plants" / "schematics").glob("*.json"))
+FOLDER = Path(__file__).resolve().parents[2] / "server" / "looplab" / "plants" / "schematics"
+DRAWINGS = sorted(FOLDER.glob("*.json"))
 
 TANK = {"kind": "tank", "x": 10, "y": 10, "width": 100, "height": 80, "level": {"signal": "h", "from": [0, 2]}}
 
@@ -25,6 +26,11 @@ def test_the_drawings_of_our_plants_are_right(path: Path):
     schematic = Schematic.model_validate(json.loads(path.read_text(encoding="utf-8")))
     assert schematic.title
     assert schematic.signals()
+
+
+def test_the_example_for_authors_is_right():
+    (example,) = re.findall(r"```json\n(.*?)```", (FOLDER / "README.md").read_text(encoding="utf-8"), re.DOTALL)
+    assert Schematic.model_validate(json.loads(example)).signals()[1] == ("shapes[1].level.signal", "h")
 
 
 def test_there_is_a_drawing_of_every_plant():

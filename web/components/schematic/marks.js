@@ -126,13 +126,18 @@ export function readout(shape, scene) {
 
   let height = 14;
   let width = 0;
-  let length = 0;
+  // digits are all as wide: what has been measured once is known for every number of its form
+  /** @type {Map<string, number>} */
+  const measures = new Map();
   const fit = () => {
-    const measured = /** @type {SVGTextElement} */ (words).getComputedTextLength();
+    const form = (value.textContent ?? "").replaceAll(/\d/g, "0");
+    const measured = measures.get(form) ?? /** @type {SVGTextElement} */ (words).getComputedTextLength();
     if (!measured) return;
+    measures.set(form, measured);
     const wanted = measured + ((bare ? 0 : SPACE_BEFORE_VALUE) + (unit.textContent ? SPACE_BEFORE_UNIT : 0)) * height;
     const pad = 0.5 * height;
-    width = Math.max(width, wanted + 2 * pad);
+    if (width >= wanted + 2 * pad) return;
+    width = wanted + 2 * pad;
     const left = align === "start" ? 0 : align === "end" ? -width : -width / 2;
     const anchor = align === "start" ? pad : align === "end" ? -pad : 0;
     words.setAttribute("x", String(anchor));
@@ -144,13 +149,12 @@ export function readout(shape, scene) {
     const shown = decimals === undefined ? formatNumber(scaled, digits) : formatFixed(scaled, decimals);
     if (value.textContent === shown) return;
     value.textContent = shown;
-    if (shown.length === length) return;
-    length = shown.length;
     fit();
   };
   const setUnit = (/** @type {Record<string, string>} */ units) => {
     unit.textContent = shape["unit"] ?? units[signal] ?? "";
     width = 0;
+    measures.clear();
     fit();
   };
   setUnit({});
@@ -159,6 +163,7 @@ export function readout(shape, scene) {
   scene.onTextSize.push((size) => {
     height = size;
     width = 0;
+    measures.clear();
     fit();
   });
   const { base, sub } = splitName(name);

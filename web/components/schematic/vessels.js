@@ -30,9 +30,9 @@ export function tank(shape, scene) {
   const liquid = svg("rect", { x: 0, width: w, "clip-path": `url(#${clip})` });
   const surface = svg("path", { class: "surface", "clip-path": `url(#${clip})` });
   const parts = [svg("clipPath", { id: clip }, svg("path", { d: inside }))];
-  if ((shape["jacket"] ?? "none") !== "none") {
+  const o = (shape["jacket"] ?? "none") === "none" ? 0 : JACKET;
+  if (o > 0) {
     const y = Math.round(0.22 * h);
-    const o = JACKET;
     const d = foot
       ? `M0 ${y}H${-o}V${h - foot}A${w / 2 + o} ${foot + o} 0 0 0 ${w + o} ${h - foot}V${y}H${w}`
       : `M0 ${y}H${-o}V${h + o - 6}Q${-o} ${h + o} ${6 - o} ${h + o}H${w + o - 6}Q${w + o} ${h + o} ${w + o} ${h + o - 6}V${y}H${w}`;
@@ -51,7 +51,6 @@ export function tank(shape, scene) {
     liquid.style.fill = colour;
     surface.style.stroke = onColour(colour);
   });
-  const o = shape["jacket"] ? JACKET : 0;
   return { nodes: parts, box: [-o, 0, w + 2 * o, h + o] };
 }
 
