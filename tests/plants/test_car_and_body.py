@@ -75,15 +75,15 @@ def test_a_fever_is_a_higher_set_point():
     assert 1.5 < ill - well < 2.1
 
 
-@pytest.mark.parametrize("inputs", [{"T_amb": 5.0}, {"T_amb": 25.0}, {"met": 150.0}])
+@pytest.mark.parametrize("inputs", [{"T_amb": 5.0}, {"T_amb": 25.0}, {"M": 150.0}])
 def test_at_rest_what_is_made_is_lost(inputs):
     _, v = body(inputs, hours=60, rtol=1e-10)
-    made = inputs.get("met", 58.2) + v["M_sh"]
+    made = inputs.get("M", 58.2) + v["M_sh"]
     assert v["Q_breath"] + v["Q_dry"] + v["E_skin"] == pytest.approx(made, rel=1e-7)
 
 
 def test_heat_stroke_and_hypothermia_are_reported():
-    hot = simulate_open_loop(BODY, np.linspace(0, 600, 301), {"T_amb": 48.0, "met": 200.0})
+    hot = simulate_open_loop(BODY, np.linspace(0, 600, 301), {"T_amb": 48.0, "M": 200.0})
     assert "heat stroke" in hot.events[0].message
     numb = simulate_open_loop(BODY, np.linspace(0, 1200, 301), {"T_amb": -10.0}, {"c_sh": 0.0})
     assert "hypothermia" in numb.events[0].message

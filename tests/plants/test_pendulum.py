@@ -45,9 +45,9 @@ def test_without_friction_the_energy_stays():
         PENDULUM, t, parameters={"mu": 0, "gamma": 0, "x_end": 1000}, initial={"phi": 1.0, "v": 0.3}, rtol=1e-12
     )
     p = PENDULUM.parameters({"mu": 0, "gamma": 0})
-    energy = [PENDULUM.variables(0.0, x.tolist(), PENDULUM.u0, p)[-1] for x in found.x]
+    energy = np.array([PENDULUM.variables(0.0, x.tolist(), PENDULUM.u0, p)[-1] for x in found.x])
     # kinetic energy of the cart and of the rod's centre and turn, by Koenig's theorem
-    x, v, phi, omega = found.x.T
+    _, v, phi, omega = found.x.T
     centre = (v + L * omega * np.cos(phi)) ** 2 + (L * omega * np.sin(phi)) ** 2
     koenig = 0.5 * M * v**2 + 0.5 * m * centre + 0.5 * J * omega**2 + m * G * L * np.cos(phi)
     assert energy == pytest.approx(koenig, abs=1e-12)

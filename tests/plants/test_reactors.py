@@ -1,5 +1,7 @@
 """The reactors: their steady states from the one equation that the balances leave, and which of them hold."""
 
+from itertools import pairwise
+
 import mpmath
 import numpy as np
 import pytest
@@ -14,7 +16,7 @@ def steady(balance, low, high):
     """Every temperature where the balance changes its sign, to 30 digits."""
     with mpmath.workdps(30):
         T = [mpmath.mpf(t) / 2 for t in range(2 * low, 2 * high)]
-        changes = [(a, b) for a, b in zip(T, T[1:], strict=False) if balance(a) * balance(b) < 0]
+        changes = [(a, b) for a, b in pairwise(T) if balance(a) * balance(b) < 0]
         return [float(mpmath.findroot(balance, ends, solver="anderson", tol=1e-50)) for ends in changes]
 
 

@@ -27,25 +27,29 @@ def states_to_try(model, run):
     return [(x[1], run.inputs), (x[3], run.inputs | run.later), (x[4], run.inputs | run.later)]
 
 
+def check_derivatives(model, run, x, inputs):
+    u, p, named_u, named_p = values(model, inputs, run.parameters)
+    named_x = dict(zip(model.state_names, x, strict=True))
+    found = model.jacobians(0.0, x.tolist(), u, p)
+    f = np.array(run.f(x, named_u, named_p))
+    assert np.array(model.f(0.0, x.tolist(), u, p)) == pytest.approx(f, rel=1e-10, abs=1e-12 * np.abs(f).max())
+    A = [slope(lambda at: run.f(list(at.values()), named_u, named_p), named_x, name) for name in named_x]
+    B = [slope(lambda at: run.f(x, at, named_p), named_u, name) for name in named_u]
+    assert found.A == pytest.approx(np.array(A).T, rel=1e-10, abs=1e-13 * np.abs(A).max())
+    assert found.B == pytest.approx(np.array(B).T, rel=1e-10, abs=1e-13 * np.abs(B).max())
+    for name in named_p:
+        by_step = slope(lambda at: run.f(x, named_u, at), named_p, name)
+        exact = model.sensitivity(name)(0.0, x.tolist(), u, p)
+        # what is left where the terms of a balance cancel
+        rounding = 1e-14 * np.abs(A).max() * np.abs(x).max() / abs(named_p[name])
+        assert exact == pytest.approx(by_step, rel=1e-10, abs=rounding), name
+
+
 @pytest.mark.parametrize("plant_id", RUNS)
 def test_derivatives(plant_id):
     model, run = plant(plant_id), RUNS[plant_id]
     for x, inputs in states_to_try(model, run):
-        u, p, named_u, named_p = values(model, inputs, run.parameters)
-        named_x = dict(zip(model.state_names, x, strict=True))
-        found = model.jacobians(0.0, x.tolist(), u, p)
-        f = np.array(run.f(x, named_u, named_p))
-        assert np.array(model.f(0.0, x.tolist(), u, p)) == pytest.approx(f, rel=1e-10, abs=1e-12 * np.abs(f).max())
-        A = [slope(lambda at: run.f(list(at.values()), named_u, named_p), named_x, name) for name in named_x]
-        B = [slope(lambda at: run.f(x, at, named_p), named_u, name) for name in named_u]
-        assert found.A == pytest.approx(np.array(A).T, rel=1e-10, abs=1e-13 * np.abs(A).max())
-        assert found.B == pytest.approx(np.array(B).T, rel=1e-10, abs=1e-13 * np.abs(B).max())
-        for name in named_p:
-            by_step = slope(lambda at: run.f(x, named_u, at), named_p, name)
-            exact = model.sensitivity(name)(0.0, x.tolist(), u, p)
-            # what is left where the terms of a balance cancel
-            rounding = 1e-14 * np.abs(A).max() * np.abs(x).max() / abs(named_p[name])
-            assert exact == pytest.approx(by_step, rel=1e-10, abs=rounding), name
+        check_derivatives(model, run, x, inputs)
 
 
 @pytest.mark.parametrize("plant_id", RUNS)

@@ -137,7 +137,7 @@ def body_temperature(x, u, p):
     shiver = _below(p["c_sh"] * _above(-core_error) * _above(-skin_error), p["M_sh_max"])
     p_air = p["humidity"] * np.exp(18.6686 - 4030.183 / (u["T_amb"] + 235.0))
     p_skin = np.exp(18.6686 - 4030.183 / (skin + 235.0))
-    made = u["met"] + shiver
+    made = u["M"] + shiver
     breath = made * (0.0014 * (34 - u["T_amb"]) + 0.0173 * (5.87 - torr * p_air))
     to_skin = (p["K_cond"] + p["c_bl"] * blood) * (core - skin)
     area = 1 + 0.15 * p["clo"]
@@ -177,7 +177,7 @@ RUNS = {
     "jacketed-cooler": Run(jacketed_cooler, 4000, 1500, {"Q": 40, "Tc": 280}),
     "jacketed-cooler-thin-wall": Run(jacketed_cooler_thin_wall, 4000, 1500, {"Q": 40, "Tc": 280}),
     "cruise-control": Run(cruise_control, 120, 20, {"slope": 0.06, "throttle": 0.6}, parameters={"gear": 3}),
-    "body-temperature": Run(body_temperature, 240, 90, {"T_amb": 5, "met": 80}, {"T_amb": 38, "met": 120}),
+    "body-temperature": Run(body_temperature, 240, 90, {"T_amb": 5, "M": 80}, {"T_amb": 38, "M": 120}),
 }
 
 

@@ -45,13 +45,13 @@ def tanks_in_series(N: int = 5) -> dict[str, Any]:
         "notes": "13",
         "time_unit": "min",
         "parameters": [
-            {"name": "V", "value": 5, "unit": "m^3", "min": 0.1, "max": 100, "latex": "V", "source": "chosen"}
+            {"name": "V", "value": 5, "unit": "m³", "min": 0.1, "max": 100, "latex": "V", "source": "chosen"}
             | {"meaning": "volume of all tanks together"}
         ],
         "inputs": [
-            {"name": "c_0", "value": 0.5, "unit": "kmol/m^3", "min": 0, "max": 1, "latex": "c_0", "source": "chosen"}
+            {"name": "c_0", "value": 0.5, "unit": "mol/l", "min": 0, "max": 1, "latex": "c_0", "source": "chosen"}
             | {"meaning": "concentration in the feed"},
-            {"name": "F", "value": 1, "unit": "m^3/min", "min": 0, "max": 2, "latex": "F", "source": "chosen"}
+            {"name": "F", "value": 1, "unit": "m³/min", "min": 0, "max": 2, "latex": "F", "source": "chosen"}
             | {"meaning": "flow through all tanks"},
         ],
         "variables": [
@@ -63,14 +63,14 @@ def tanks_in_series(N: int = 5) -> dict[str, Any]:
                 "name": f"c_{i}",
                 "initial": "c_0",
                 "equation": f"{N}*F/V*(c_{i - 1} - c_{i})",
-                "unit": "kmol/m^3",
+                "unit": "mol/l",
                 "meaning": f"concentration in tank {i}",
                 "latex": f"c_{{{i}}}",
             }
             for i in numbers
         ],
         "outputs": [
-            {"name": f"c_{N}", "expression": f"c_{N}", "unit": "kmol/m^3", "meaning": "concentration that flows out"}
+            {"name": f"c_{N}", "expression": f"c_{N}", "unit": "mol/l", "meaning": "concentration that flows out"}
             | {"latex": f"c_{{{N}}}"}
         ],
         "operating_points": [
