@@ -82,7 +82,8 @@ class Sampled:
     @cached_property
     def value(self) -> ComplexArray:
         """G(j omega), shape (n,)."""
-        return self.curve.value * abs(self.gain)
+        with np.errstate(invalid="ignore"):  # infinite on a pole of the axis
+            return self.curve.value * abs(self.gain)
 
 
 @lru_cache(maxsize=64)

@@ -34,12 +34,13 @@ def delay_free_response(
     """
     n, c = x0.shape
     power = expm(A * h) if step is None else step
-    states = np.empty((n, count, c))
-    states[:, 0] = x0
+    states = np.empty((n, count * c))
+    states[:, :c] = x0
     done = 1
     while done < count:
         more = min(done, count - done)
-        states[:, done : done + more] = (power @ states[:, :more].reshape(n, -1)).reshape(n, more, c)
-        power = power @ power
+        np.matmul(power, states[:, : more * c], out=states[:, done * c : (done + more) * c])
         done += more
-    return (C @ states.reshape(n, -1)).reshape(-1, count, c).transpose(1, 0, 2)
+        if done < count:
+            power = power @ power
+    return (C @ states).reshape(-1, count, c).transpose(1, 0, 2)

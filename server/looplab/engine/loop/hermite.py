@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 from math import copysign, sqrt
+from operator import itemgetter
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +14,17 @@ FloatArray = npt.NDArray[np.float64]
 # Gauss-Legendre nodes and weights on [0, 1]: exact to degree 7, the square of a cubic included.
 _NODES, _WEIGHTS = (0.5 * v for v in np.polynomial.legendre.leggauss(4))
 _NODES = _NODES + 0.5
-_POWERS = np.vander(_NODES, 4, increasing=True).T
+# y0, m0, y1, m1 (ends and slopes of a piece) to the values at the nodes, and those to integrals of y and x y.
+_TO_NODES = np.array(
+    [
+        (1 + 2 * _NODES) * (1 - _NODES) ** 2,
+        _NODES * (1 - _NODES) ** 2,
+        _NODES**2 * (3 - 2 * _NODES),
+        -(_NODES**2) * (1 - _NODES),
+    ]
+).T
+_TO_MOMENTS = np.array([_WEIGHTS, _WEIGHTS * _NODES])
+Cubic = tuple[float, float, float, float]
 
 
 def _cubic_root(a: float, b: float, c: float, d: float) -> float:
@@ -22,6 +33,7 @@ def _cubic_root(a: float, b: float, c: float, d: float) -> float:
     end = a + b + c + d
     rising = end > a
     x = min(max(a / (a - end), 0.0), 1.0) if end != a else 0.5
+    last = 1.0
     for _ in range(60):
         value = a + x * (b + x * (c + x * d))
         if value == 0.0:
@@ -34,9 +46,11 @@ def _cubic_root(a: float, b: float, c: float, d: float) -> float:
         new = x - value / slope if slope else -1.0
         if not low <= new <= high:
             new = 0.5 * (low + high)
-        if abs(new - x) < 1e-15:
+        step = abs(new - x)
+        # Newton's steps shrink as their squares: the next would be step^3 / last^2.
+        if step < 1e-15 or step * step * step < 1e-16 * last * last:
             return new
-        x = new
+        x, last = new, step
     return x
 
 
@@ -53,85 +67,115 @@ class HermiteCurve:
     """y(t) through samples y with slopes dy, shape (n,) each; slopes are right-hand limits."""
 
     def __init__(self, t: FloatArray, y: FloatArray, dy: FloatArray) -> None:
-        self.t, self.y, self.dy = t, y, dy
+        (only,) = HermiteCurve.several(t, y[None], dy[None])
+        self.__dict__.update(only.__dict__)
 
-    @cached_property
-    def _cubic(self) -> FloatArray:
-        """Coefficients of a + b x + c x^2 + d x^3 for x in [0, 1], shape (4, n-1)."""
-        h = self.t[1:] - self.t[:-1]
-        y0 = self.y[:-1]
+    @classmethod
+    def several(cls, t: FloatArray, y: FloatArray, dy: FloatArray) -> list[HermiteCurve]:
+        """One curve for each row of y and dy, shape (k, n), over the same t."""
+        h = t[1:] - t[:-1]
+        pieces = np.empty((4, y.shape[0], h.size))
+        pieces[0], pieces[2] = y[:, :-1], y[:, 1:]
+        np.multiply(dy[:, :-1], h, out=pieces[1])
+        np.multiply(dy[:, 1:], h, out=pieces[3])
+        _, m0, _, m1 = pieces
         # The slope at the right end is the next sample's: at a kink it belongs to the next piece, so the cubic is
         # kept only where it agrees with the chord; elsewhere the parabola through both ends and the left slope.
-        m0, m1, chord = self.dy[:-1] * h, self.dy[1:] * h, self.y[1:] - y0
-        d = m0 + m1 - 2 * chord
-        kink = np.abs(d) > 0.5 * np.maximum(np.abs(m0) + np.abs(m1), np.abs(chord)) + 1e-300
-        out = np.empty((4, h.size))
-        out[0], out[1] = y0, m0
-        out[2] = np.where(kink, chord - m0, chord - m0 - d)
-        out[3] = np.where(kink, 0.0, d)
+        chord = pieces[2] - pieces[0]
+        d = np.abs(m0 + m1 - 2.0 * chord)
+        kink = d > 0.5 * np.maximum(np.abs(m0) + np.abs(m1), np.abs(chord)) + 1e-300
+        corner = None
+        if kink.any():
+            m1[kink] = (2.0 * chord - m0)[kink]
+            corner = m1[:, :-1] * m0[:, 1:] < 0
+        turning = m0 * m1 < 0
+        out = []
+        for i in range(y.shape[0]):
+            curve = object.__new__(cls)
+            curve.t, curve.y, curve._h, curve._pieces = t, y[i], h, pieces[:, i]
+            curve._turning = np.flatnonzero(turning[i]).tolist()
+            curve._corners = [] if corner is None else (1 + np.flatnonzero(corner[i])).tolist()
+            out.append(curve)
         return out
 
-    def _times(self, pieces: list[int], x: list[float]) -> FloatArray:
-        at = np.array(pieces, dtype=int)
-        return self.t[at] + np.array(x) * (self.t[at + 1] - self.t[at])
+    t: FloatArray
+    y: FloatArray
+    _h: FloatArray
+    _pieces: FloatArray  # ends and slopes per piece, y0, m0, y1, m1 by rows
+    _turning: list[int]  # pieces with a turning point inside
+    _corners: list[int]  # samples at which a kink is a turning point
+
+    def _cubic(self, i: int) -> Cubic:
+        """Coefficients of a + b x + c x^2 + d x^3 for x in [0, 1] in piece i."""
+        y0, m0, y1, m1 = self._pieces[:, i].tolist()
+        d = m0 + m1 - 2 * (y1 - y0)
+        return y0, m0, y1 - y0 - m0 - d, d
+
+    def _time(self, i: int, x: float) -> float:
+        return float(self.t[i]) + x * float(self._h[i])
+
+    def pieces_across(self, *levels: float) -> list[list[int]]:
+        """For each level the pieces in which the curve crosses it, increasing."""
+        above = self.y > np.array(levels)[:, None]
+        which, piece = (above[:, 1:] != above[:, :-1]).nonzero()
+        out: list[list[int]] = [[] for _ in levels]
+        for k, i in zip(which.tolist(), piece.tolist(), strict=True):
+            out[k].append(i)
+        return out
+
+    def crossing(self, piece: int, level: float) -> float:
+        """Time at which the curve crosses a level within a piece."""
+        a, b, c, d = self._cubic(piece)
+        return self._time(piece, _cubic_root(a - level, b, c, d))
 
     def crossings(self, level: float) -> FloatArray:
         """Times at which the curve crosses a level, increasing."""
-        above = self.y > level
-        pieces = np.flatnonzero(above[1:] != above[:-1])
-        if not pieces.size:
-            return np.zeros(0)
-        x = [_cubic_root(a - level, b, c, d) for a, b, c, d in self._cubic[:, pieces].T.tolist()]
-        return self._times(pieces.tolist(), x)
+        (pieces,) = self.pieces_across(level)
+        return np.array([self.crossing(i, level) for i in pieces])
 
     @cached_property
-    def _turns(self) -> tuple[list[int], list[float], list[float]]:
-        """Pieces with a turning point inside, where in the piece, and the value there."""
-        _, b, c, d = self._cubic
-        pieces = np.flatnonzero(b * (b + 2 * c + 3 * d) < 0)
+    def _turns(self) -> tuple[list[float], list[float]]:
+        """Where in its piece each turning point lies, and the value there."""
         where, values = [], []
-        for a_, b_, c_, d_ in self._cubic[:, pieces].T.tolist():
-            x = _turning_point(b_, c_, d_)
+        for i in self._turning:
+            a, b, c, d = self._cubic(i)
+            x = _turning_point(b, c, d)
             where.append(x)
-            values.append(a_ + x * (b_ + x * (c_ + x * d_)))
-        return pieces.tolist(), where, values
+            values.append(a + x * (b + x * (c + x * d)))
+        return where, values
 
-    def extrema(self) -> tuple[FloatArray, FloatArray]:
+    def extrema(self) -> tuple[list[float], list[float]]:
         """Times and values of the turning points, corners at samples included, increasing in time."""
-        _, b, c, d = self._cubic
-        pieces, where, values = self._turns
-        corner = 1 + np.flatnonzero((b + 2 * c + 3 * d)[:-1] * b[1:] < 0)
-        times = np.append(self._times(pieces, where), self.t[corner])
-        found = np.append(np.array(values), self.y[corner])
-        order = np.argsort(times)
-        return times[order], found[order]
+        where, values = self._turns
+        found = [(self._time(i, x), v) for i, x, v in zip(self._turning, where, values, strict=True)]
+        if self._corners:
+            found += zip(self.t[self._corners].tolist(), self.y[self._corners].tolist(), strict=True)
+            found.sort(key=itemgetter(0))
+        return [t for t, _ in found], [v for _, v in found]
 
     def absolute_integrals(self, level: float) -> tuple[float, float, float]:
         """Integrals of |e|, e^2 and t|e| over the record, e = level - y; pieces are split where e changes sign."""
-        h, start = self.t[1:] - self.t[:-1], self.t[:-1]
-        error = level - (self._cubic.T @ _POWERS)  # at the Gauss nodes of each piece
-        size = np.abs(error)
-        by_piece = size @ _WEIGHTS
-        moment = (size * _NODES) @ _WEIGHTS
-        iae = h * by_piece
-        itae = h * (start * by_piece + h * moment)
-        ise = float(h @ (error * error @ _WEIGHTS))
-        above = self.y > level
-        for i in np.flatnonzero(above[1:] != above[:-1]).tolist():
-            a, b, c, d = self._cubic[:, i].tolist()
-            x = _cubic_root(a - level, b, c, d)
-            iae[i] = itae[i] = 0.0
-            for low, high in ((0.0, x), (x, 1.0)):
-                nodes = low + (high - low) * _NODES
-                part = np.abs(level - (a + nodes * (b + nodes * (c + nodes * d)))) * _WEIGHTS * (high - low) * h[i]
-                iae[i] += part.sum()
-                itae[i] += (part * (start[i] + nodes * h[i])).sum()
-        return float(iae.sum()), ise, float(itae.sum())
+        h, start = self._h, self.t[:-1]
+        error = _TO_NODES @ self._pieces - level
+        whole, moment = _TO_MOMENTS @ np.abs(error)
+        for i in self.pieces_across(level)[0]:
+            a, b, c, d = self._cubic(i)
+            a -= level
+            x = _cubic_root(a, b, c, d)
+            before = x * (a + x * (b / 2 + x * (c / 3 + x * d / 4)))
+            after = a + b / 2 + c / 3 + d / 4 - before
+            before_x = x * x * (a / 2 + x * (b / 3 + x * (c / 4 + x * d / 5)))
+            after_x = a / 2 + b / 3 + c / 4 + d / 5 - before_x
+            whole[i], moment[i] = abs(before) + abs(after), abs(before_x) + abs(after_x)
+        whole *= h
+        moment *= h * h
+        ise = _WEIGHTS @ np.square(error, out=error) @ h
+        return float(whole.sum()), float(ise), float(start @ whole + moment.sum())
 
     def total_variation(self) -> float:
         """Sum of all ups and downs, turning points between the samples included."""
-        total = float(np.abs(np.diff(self.y)).sum())
-        for i, value in zip(self._turns[0], self._turns[2], strict=True):
+        total = float(np.abs(self.y[1:] - self.y[:-1]).sum())
+        for i, value in zip(self._turning, self._turns[1], strict=True):
             y0, y1 = float(self.y[i]), float(self.y[i + 1])
             total += abs(value - y0) + abs(y1 - value) - abs(y1 - y0)
         return total

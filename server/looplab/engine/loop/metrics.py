@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import copysign
 
 import numpy as np
 import numpy.typing as npt
@@ -56,34 +57,35 @@ class StepMetrics:
 
 
 def _rise(curve: HermiteCurve, final: float) -> float | None:
-    low, high = curve.crossings(0.1 * final), curve.crossings(0.9 * final)
-    return float(high[0] - low[0]) if low.size and high.size else None
+    low, high = curve.pieces_across(0.1 * final, 0.9 * final)
+    return curve.crossing(high[0], 0.9 * final) - curve.crossing(low[0], 0.1 * final) if low and high else None
 
 
 def _settling(curve: HermiteCurve, final: float, span: float) -> float | None:
     """Last time outside the band around the final value; None when the record ends outside, or close to its end."""
-    if abs(curve.y[-1] - final) > BAND * span:
+    if abs(float(curve.y[-1]) - final) > BAND * span:
         return None
-    edges = np.concatenate([curve.crossings(final + BAND * span), curve.crossings(final - BAND * span)])
-    return float(edges.max()) if edges.size else 0.0
+    edges = (final + BAND * span, final - BAND * span)
+    last = [(pieces[-1], edge) for pieces, edge in zip(curve.pieces_across(*edges), edges, strict=True) if pieces]
+    return max((curve.crossing(piece, edge) for piece, edge in last), default=0.0)
 
 
-def _overshoots(curve: HermiteCurve, final: float, direction: float) -> tuple[FloatArray, FloatArray]:
+def _overshoots(curve: HermiteCurve, final: float, direction: float) -> tuple[list[float], list[float]]:
     """Times and heights of the successive summits beyond the final value."""
-    t, y = curve.extrema()
-    height = direction * (y - final)
-    beyond = height > 1e-9 * max(abs(final), 1e-9)
-    return t[beyond], height[beyond]
+    least = 1e-9 * max(abs(final), 1e-9)
+    heights = [(t, direction * (y - final)) for t, y in zip(*curve.extrema(), strict=True)]
+    beyond = [(t, height) for t, height in heights if height > least]
+    return [t for t, _ in beyond], [height for _, height in beyond]
 
 
 def _shape(curve: HermiteCurve, final: float, out: dict[str, float | None], why: dict[str, str]) -> None:
     """Peak, overshoot, rise, settling and decay of a response that moves from 0 to ``final``."""
-    direction = np.sign(final)
+    direction = copysign(1.0, final)
     t_top, height = _overshoots(curve, final, direction)
-    if t_top.size:
-        i = int(np.argmax(height))
-        out["peak"], out["t_peak"] = float(final + direction * height[i]), float(t_top[i])
-        out["overshoot_pct"] = 100.0 * float(height[i]) / abs(final)
+    if height:
+        highest = max(height)
+        out["peak"], out["t_peak"] = final + direction * highest, t_top[height.index(highest)]
+        out["overshoot_pct"] = 100.0 * highest / abs(final)
     else:
         out["overshoot_pct"] = 0.0
         out["peak"] = float(direction * (direction * curve.y).max())
@@ -94,8 +96,8 @@ def _shape(curve: HermiteCurve, final: float, out: dict[str, float | None], why:
     out["t_settle"] = _settling(curve, final, abs(final))
     if out["t_settle"] is None:
         why["t_settle"] = "undefined: not within 2 % of the final value at the end of the horizon"
-    if height.size >= 2:
-        out["decay_ratio"] = float(height[1] / height[0])
+    if len(height) >= 2:
+        out["decay_ratio"] = height[1] / height[0]
     else:
         why["decay_ratio"] = "undefined: there are not two overshoots within the horizon"
 
@@ -103,10 +105,11 @@ def _shape(curve: HermiteCurve, final: float, out: dict[str, float | None], why:
 def _disturbed(curve: HermiteCurve, final: float, out: dict[str, float | None], why: dict[str, str]) -> None:
     """Peak and settling of a response that ends near where it began (a load step under control)."""
     t, y = curve.extrema()
-    t, y = np.append(t, curve.t[[0, -1]]), np.append(y, curve.y[[0, -1]])
-    i = int(np.argmax(np.abs(y)))
-    out["peak"], out["t_peak"] = float(y[i]), float(t[i])
-    span = abs(out["peak"] or 0.0)
+    ends = [0, -1]
+    out["t_peak"], out["peak"] = max(
+        zip([*t, *curve.t[ends].tolist()], [*y, *curve.y[ends].tolist()], strict=True), key=lambda at: abs(at[1])
+    )
+    span = abs(out["peak"])
     out["t_settle"] = _settling(curve, final, span) if span else 0.0
     if out["t_settle"] is None:
         why["t_settle"] = "undefined: not within 2 % of the largest deviation at the end of the horizon"
@@ -148,7 +151,8 @@ def step_metrics(response: Response, *, setpoint: float, stable: bool) -> StepMe
         return StepMetrics(reasons=dict.fromkeys(NUMBERS, "undefined: the closed loop is not stable"))
     why: dict[str, str] = {}
     final = response.final_y
-    curve = HermiteCurve(response.t, response.y, response.dy)
+    signals = np.stack([response.y, response.u, response.dy, response.du])
+    curve, effort = HermiteCurve.several(response.t, signals[:2], signals[2:])
     if final is None:
         why |= dict.fromkeys(NUMBERS[:8], "undefined: the response has no final value")
     else:
@@ -161,7 +165,7 @@ def step_metrics(response: Response, *, setpoint: float, stable: bool) -> StepMe
     if final is not None and abs(setpoint - final) > 1e-9:
         for name in ("IAE", "ISE", "ITAE"):
             why[name] = "grows with the horizon: an offset remains"
-    out["TV"] = abs(float(response.u[0])) + HermiteCurve(response.t, response.u, response.du).total_variation()
+    out["TV"] = abs(float(response.u[0])) + effort.total_variation()
     return StepMetrics(**out, reasons=why)
 
 

@@ -32,14 +32,22 @@ def polish_closed_loop_poles(
         True where the residual \|1 + K L\| ended below 1e-8 (or what rounding of s allows) near the guess.
     """
     s = guess.astype(complex)
-    K = np.asarray(gain, dtype=float)
+    roots = np.concatenate([L.zeros, L.poles])
+    sign = np.ones(roots.size, dtype=complex)
+    sign[L.zeros.size :] = -1.0
     with np.errstate(all="ignore"):
-        for _ in range(steps):
-            step = np.log(-K * L(s)) / L.log_derivative(s)
+        offset = np.log(np.asarray(gain, dtype=float) * L.gain + 0j) - 1j * np.pi
+        for left in range(steps, -1, -1):
+            away = s[..., None] - roots
+            miss = np.log(away) @ sign + (offset - L.theta * s)
+            miss.imag -= 2.0 * np.pi * np.round(miss.imag / (2.0 * np.pi))
+            slope = np.reciprocal(away) @ sign - L.theta
+            if not left:
+                break
+            step = miss / slope
             s = s - np.where(np.isfinite(step), step, 0.0)
-        value = K * L(s)
         # Next to an open-loop pole L cannot be known better than the rounding of s allows.
-        knowable = 8.0 * np.finfo(float).eps * np.abs(s) * np.abs(L.log_derivative(s))
-        good = np.isfinite(value) & (np.abs(1.0 + value) < np.maximum(1e-8, np.minimum(knowable, 0.1)))
+        knowable = 8.0 * np.finfo(float).eps * np.abs(s * slope)
+        good = np.abs(miss) < np.maximum(1e-8, np.minimum(knowable, 0.1))
         good &= np.abs(s - guess) <= 0.3 * np.abs(guess) + 1e-6
     return s, good
