@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-from math import copysign, sqrt
-from operator import itemgetter
-
 import numpy as np
 import numpy.typing as npt
 
@@ -54,13 +50,14 @@ def _cubic_root(a: float, b: float, c: float, d: float) -> float:
     return x
 
 
-def _turning_point(b: float, c: float, d: float) -> float:
-    """Root in [0, 1] of the slope b + 2 c x + 3 d x^2, which changes sign there."""
-    q = -(c + copysign(sqrt(max(c * c - 3 * b * d, 0.0)), c))
-    for x in (b / q if q else -1.0, q / (3 * d) if d else -1.0):
-        if 0.0 <= x <= 1.0:
-            return x
-    return 0.5
+def _turning_points(b: FloatArray, c: FloatArray, d: FloatArray) -> FloatArray:
+    """Roots in [0, 1] of the slopes b + 2 c x + 3 d x^2, which change sign there."""
+    with np.errstate(all="ignore"):
+        q = -(c + np.copysign(np.sqrt(np.maximum(c * c - 3.0 * b * d, 0.0)), c))
+        near, far = b / q, q / (3.0 * d)
+    near[~((near >= 0.0) & (near <= 1.0))] = np.nan
+    far[~((far >= 0.0) & (far <= 1.0))] = 0.5
+    return np.where(np.isnan(near), far, near)
 
 
 class HermiteCurve:
@@ -88,13 +85,22 @@ class HermiteCurve:
         if kink.any():
             m1[kink] = (2.0 * chord - m0)[kink]
             corner = m1[:, :-1] * m0[:, 1:] < 0
-        turning = m0 * m1 < 0
+        rows, turning = (m0 * m1 < 0).nonzero()
+        a, b, a1, b1 = pieces[:, rows, turning]
+        d = b + b1 - 2.0 * (a1 - a)
+        c = a1 - a - b - d
+        x = _turning_points(b, c, d)
+        summits = a + x * (b + x * (c + x * d))
+        # What a curve goes up and down beyond the straight way between the samples.
+        detours = np.abs(summits - a) + np.abs(a1 - summits) - np.abs(a1 - a)
+        times = t[turning] + x * h[turning]
         out = []
         for i in range(y.shape[0]):
-            curve = object.__new__(cls)
+            curve, mine = object.__new__(cls), rows == i
             curve.t, curve.y, curve._h, curve._pieces = t, y[i], h, pieces[:, i]
-            curve._turning = np.flatnonzero(turning[i]).tolist()
-            curve._corners = [] if corner is None else (1 + np.flatnonzero(corner[i])).tolist()
+            curve._summits = times[mine], summits[mine]
+            curve._detours = float(detours[mine].sum())
+            curve._corners = np.zeros(0, dtype=int) if corner is None else 1 + np.flatnonzero(corner[i])
             out.append(curve)
         return out
 
@@ -102,8 +108,9 @@ class HermiteCurve:
     y: FloatArray
     _h: FloatArray
     _pieces: FloatArray  # ends and slopes per piece, y0, m0, y1, m1 by rows
-    _turning: list[int]  # pieces with a turning point inside
-    _corners: list[int]  # samples at which a kink is a turning point
+    _summits: tuple[FloatArray, FloatArray]  # times and values of the turning points inside pieces
+    _corners: npt.NDArray[np.intp]  # samples at which a kink is a turning point
+    _detours: float
 
     def _cubic(self, i: int) -> Cubic:
         """Coefficients of a + b x + c x^2 + d x^3 for x in [0, 1] in piece i."""
@@ -114,51 +121,50 @@ class HermiteCurve:
     def _time(self, i: int, x: float) -> float:
         return float(self.t[i]) + x * float(self._h[i])
 
-    def pieces_across(self, *levels: float) -> list[list[int]]:
-        """For each level the pieces in which the curve crosses it, increasing."""
-        above = self.y > np.array(levels)[:, None]
-        which, piece = (above[:, 1:] != above[:, :-1]).nonzero()
-        out: list[list[int]] = [[] for _ in levels]
-        for k, i in zip(which.tolist(), piece.tolist(), strict=True):
-            out[k].append(i)
-        return out
+    def _pieces_across(self, level: float) -> list[int]:
+        above = self.y > level
+        return np.flatnonzero(above[1:] != above[:-1]).tolist()
 
-    def crossing(self, piece: int, level: float) -> float:
-        """Time at which the curve crosses a level within a piece."""
+    def _crossing(self, piece: int, level: float) -> float:
         a, b, c, d = self._cubic(piece)
-        return self._time(piece, _cubic_root(a - level, b, c, d))
+        return float(self.t[piece]) + _cubic_root(a - level, b, c, d) * float(self._h[piece])
 
     def crossings(self, level: float) -> FloatArray:
         """Times at which the curve crosses a level, increasing."""
-        (pieces,) = self.pieces_across(level)
-        return np.array([self.crossing(i, level) for i in pieces])
+        return np.array([self._crossing(i, level) for i in self._pieces_across(level)])
 
-    @cached_property
-    def _turns(self) -> tuple[list[float], list[float]]:
-        """Where in its piece each turning point lies, and the value there."""
-        where, values = [], []
-        for i in self._turning:
-            a, b, c, d = self._cubic(i)
-            x = _turning_point(b, c, d)
-            where.append(x)
-            values.append(a + x * (b + x * (c + x * d)))
-        return where, values
+    def first_crossing(self, level: float) -> float | None:
+        """Time at which the curve first crosses a level."""
+        above = self.y > level
+        changed = above != above[0]
+        i = int(changed.argmax())
+        return self._crossing(i - 1, level) if changed[i] else None
+
+    def last_outside(self, level: float, band: float) -> float | None:
+        """When the curve comes within level +- band for the rest of the record; None where it ends outside."""
+        outside = np.abs(self.y - level) > band
+        if outside[-1]:
+            return None
+        i = outside.size - 1 - int(outside[::-1].argmax())
+        if not outside[i]:
+            return 0.0
+        return self._crossing(i, level + band if self.y[i] > level else level - band)
 
     def extrema(self) -> tuple[list[float], list[float]]:
         """Times and values of the turning points, corners at samples included, increasing in time."""
-        where, values = self._turns
-        found = [(self._time(i, x), v) for i, x, v in zip(self._turning, where, values, strict=True)]
-        if self._corners:
-            found += zip(self.t[self._corners].tolist(), self.y[self._corners].tolist(), strict=True)
-            found.sort(key=itemgetter(0))
-        return [t for t, _ in found], [v for _, v in found]
+        times, values = self._summits
+        if self._corners.size:
+            times, values = np.append(times, self.t[self._corners]), np.append(values, self.y[self._corners])
+            order = times.argsort(kind="stable")
+            times, values = times[order], values[order]
+        return times.tolist(), values.tolist()
 
     def absolute_integrals(self, level: float) -> tuple[float, float, float]:
         """Integrals of |e|, e^2 and t|e| over the record, e = level - y; pieces are split where e changes sign."""
         h, start = self._h, self.t[:-1]
         error = _TO_NODES @ self._pieces - level
         whole, moment = _TO_MOMENTS @ np.abs(error)
-        for i in self.pieces_across(level)[0]:
+        for i in self._pieces_across(level):
             a, b, c, d = self._cubic(i)
             a -= level
             x = _cubic_root(a, b, c, d)
@@ -174,8 +180,4 @@ class HermiteCurve:
 
     def total_variation(self) -> float:
         """Sum of all ups and downs, turning points between the samples included."""
-        total = float(np.abs(self.y[1:] - self.y[:-1]).sum())
-        for i, value in zip(self._turning, self._turns[1], strict=True):
-            y0, y1 = float(self.y[i]), float(self.y[i + 1])
-            total += abs(value - y0) + abs(y1 - value) - abs(y1 - y0)
-        return total
+        return float(np.abs(self.y[1:] - self.y[:-1]).sum()) + self._detours

@@ -57,17 +57,8 @@ class StepMetrics:
 
 
 def _rise(curve: HermiteCurve, final: float) -> float | None:
-    low, high = curve.pieces_across(0.1 * final, 0.9 * final)
-    return curve.crossing(high[0], 0.9 * final) - curve.crossing(low[0], 0.1 * final) if low and high else None
-
-
-def _settling(curve: HermiteCurve, final: float, span: float) -> float | None:
-    """Last time outside the band around the final value; None when the record ends outside, or close to its end."""
-    if abs(float(curve.y[-1]) - final) > BAND * span:
-        return None
-    edges = (final + BAND * span, final - BAND * span)
-    last = [(pieces[-1], edge) for pieces, edge in zip(curve.pieces_across(*edges), edges, strict=True) if pieces]
-    return max((curve.crossing(piece, edge) for piece, edge in last), default=0.0)
+    low, high = curve.first_crossing(0.1 * final), curve.first_crossing(0.9 * final)
+    return None if low is None or high is None else high - low
 
 
 def _overshoots(curve: HermiteCurve, final: float, direction: float) -> tuple[list[float], list[float]]:
@@ -93,7 +84,7 @@ def _shape(curve: HermiteCurve, final: float, out: dict[str, float | None], why:
     out["t_rise"] = _rise(curve, final)
     if out["t_rise"] is None:
         why["t_rise"] = "undefined: the response does not reach 90 % of its final value within the horizon"
-    out["t_settle"] = _settling(curve, final, abs(final))
+    out["t_settle"] = curve.last_outside(final, BAND * abs(final))
     if out["t_settle"] is None:
         why["t_settle"] = "undefined: not within 2 % of the final value at the end of the horizon"
     if len(height) >= 2:
@@ -110,7 +101,7 @@ def _disturbed(curve: HermiteCurve, final: float, out: dict[str, float | None], 
         zip([*t, *curve.t[ends].tolist()], [*y, *curve.y[ends].tolist()], strict=True), key=lambda at: abs(at[1])
     )
     span = abs(out["peak"])
-    out["t_settle"] = _settling(curve, final, span) if span else 0.0
+    out["t_settle"] = curve.last_outside(final, BAND * span) if span else 0.0
     if out["t_settle"] is None:
         why["t_settle"] = "undefined: not within 2 % of the largest deviation at the end of the horizon"
     for name in ("overshoot_pct", "t_rise"):
