@@ -31,7 +31,7 @@ class Ours:
         """Verdict, poles, y and u for setpoint and load, metrics, Bode of L, P, C, sensitivities, Nyquist, margins."""
         from looplab.engine.frequency import bode, margins, nyquist_count, nyquist_curve
         from looplab.engine.frequency.sampled import sampled_at
-        from looplab.engine.loop import closed_loop_step, step_metrics
+        from looplab.engine.loop import closed_loop_step, loop_metrics
         from looplab.engine.stability import closed_loop_poles, closed_loop_verdict, root_locus
 
         loop = self.loop(Kc)
@@ -44,10 +44,7 @@ class Ours:
             "verdict": verdict,
             "poles": closed_loop_poles(loop),
             "step": step,
-            "metrics": (
-                step_metrics(step.setpoint, setpoint=1.0, stable=verdict.closed_loop_stable),
-                step_metrics(step.load, setpoint=0.0, stable=verdict.closed_loop_stable),
-            ),
+            "metrics": loop_metrics(step, stable=verdict.closed_loop_stable),
             "bode": [bode(system, self.omega) for system in (L, self.plant, loop.C)],
             "sensitivity": (S, L_at * S, P_at * S, C_at * S),
             "nyquist": (nyquist_curve(L), nyquist_count(L)),

@@ -131,8 +131,13 @@ def _gain_crossovers(L: TransferFunction, grid: Sampled) -> FloatArray:
     at = np.flatnonzero(above[1:] != above[:-1])
     omega = grid.omega
     if at.size <= FEW:
-        f = scalar_loop(L.unit).log_magnitude
-        return np.array([exp(newton_in_bracket(f, log(omega[i]), log(omega[i + 1]), level)) for i in at.tolist()])
+        f, at_grid = scalar_loop(L.unit).log_magnitude, grid.curve.log_magnitude
+        return np.array(
+            [
+                exp(newton_in_bracket(f, log(omega[i]), log(omega[i + 1]), *at_grid[i : i + 2].tolist(), level))
+                for i in at.tolist()
+            ]
+        )
     x = np.log(omega)
     return np.exp(refine_brackets(lambda x: log_magnitude(L, np.exp(x)), x[at], x[at + 1]))
 
@@ -156,8 +161,8 @@ def _phase_crossovers(L: TransferFunction, omega: FloatArray, phase: FloatArray)
 
     if at.size <= FEW:
         f = scalar_loop(L).phase
-        ends = zip(a.tolist(), b.tolist(), level, strict=True)
-        return np.array([exp(newton_in_bracket(f, low, high, value)) for low, high, value in ends]), np.array(direction)
+        ends = zip(a.tolist(), b.tolist(), phase[at].tolist(), phase[at + 1].tolist(), level, strict=True)
+        return np.array([exp(newton_in_bracket(f, *end)) for end in ends]), np.array(direction)
     return np.exp(refine_brackets(lambda x: phase_rad(L, np.exp(x)) - target, a, b)), np.array(direction)
 
 

@@ -72,16 +72,17 @@ def _peaks_on(grid: Sampled) -> list[tuple[float, float]]:
     sizes[np.isnan(sizes)] = 0.0
     loop, gain = scalar_loop(grid.curve.unit), abs(grid.gain)
     out = []
-    for part, size, turns in zip("ST", sizes, summit, strict=True):
+    for row, part in enumerate("ST"):
+        size = sizes[row]
         best = int(size.argmax())
         top, where = float(size[best]), float(omega[best])
-        at = np.flatnonzero(turns)
-        height = np.maximum(size[at], size[at + 1])
-        # Between neighbours a summit rises little above them: only the highest can win.
-        at = at[height > 0.5 * top] if at.size > 1 else at
-        for i in at[-8:].tolist() if at.size <= 8 else at[np.argsort(size[at])[-8:]].tolist():
+        at = np.flatnonzero(summit[row])
+        # Only the highest summits can win; the rest need no refinement.
+        if at.size > 8:
+            at = at[np.argsort(np.maximum(size[at], size[at + 1]))[-8:]]
+        for i in at.tolist():
             slope = partial(loop.sensitivity_slope, gain=gain, part=part)
-            x = newton_in_bracket(slope, log(omega[i]), log(omega[i + 1]))
+            x = newton_in_bracket(slope, log(omega[i]), log(omega[i + 1]), *slopes[row, i : i + 2].tolist())
             peak = loop.peak_size(x, gain, part)
             if peak > top:
                 top, where = peak, exp(x)

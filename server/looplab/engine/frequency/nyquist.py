@@ -14,6 +14,8 @@ from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
 
+# Closer to -1 than this the curve passes through it.
+ON_CURVE = 1e-9
 # Beyond this, next to poles on the axis, the curve is not drawn.
 LARGEST_DRAWN = 1e6
 OUT_OF_PICTURE = 50.0
@@ -108,12 +110,12 @@ def nyquist_count(L: TransferFunction) -> NyquistCount:
         )
     if found.overrun:
         return NyquistCount(None, P, None, f"the curve encircles -1 {OFTEN}: the loop is unstable")
-    touching = bool(np.any(np.abs(found.phase_log_magnitude) < 1e-9))
-    touching |= bool(np.any(np.abs(np.mod(found.gain_phase, 2 * np.pi) - np.pi) < 1e-9))
-    if L.origin_order == 0 and abs(L.origin_gain + 1.0) < 1e-9:
+    size, direction = found.phase_log_magnitude.tolist(), found.phase_direction.tolist()
+    touching = any(abs(m) < ON_CURVE for m in size)
+    touching |= any(abs(p % (2.0 * np.pi) - np.pi) < ON_CURVE for p in found.gain_phase.tolist())
+    if L.origin_order == 0 and abs(L.origin_gain + 1.0) < ON_CURVE:
         touching = True
-    outside = found.phase_log_magnitude > 0
-    N = int(-2 * found.phase_direction[outside].sum())
+    N = int(-2 * sum(d for m, d in zip(size, direction, strict=True) if m > 0))
     if found.start_phase is not None:
         N += _start_turns(L, found.start_phase)
     if L.theta == 0 and L.relative_degree == 0 and L.gain < -1.0 and found.start_phase is not None:

@@ -76,17 +76,17 @@ class ScalarLoop:
         return value, q, dq
 
     def sensitivity_slope(self, x: float, gain: float, part: str) -> tuple[float, float]:
-        """d ln|S| / dx or d ln|T| / dx for L of the given gain, per omega, and its slope.
+        """d ln|S| / dx or d ln|T| / dx for L of the given gain, and its slope.
 
-        With q = L'/L they are Im(T q) and -Im(S q); S' = -S T q and T' = S T q.
+        With q = L'/L they are omega Im(T q) and -omega Im(S q); S' = -S T q and T' = S T q.
         """
         omega = math.exp(x)
         value, q, dq = self._value_and_rates(1j * omega, gain)
         S = 1.0 / ((1.0 + value) or TINY)
         turn = value * S * S * q * q
-        if part == "S":
-            return (value * S * q).imag, (turn + value * S * dq).real * omega
-        return -(S * q).imag, (turn - S * dq).real * omega
+        factor = value * S if part == "S" else -S
+        slope = (factor * q).imag * omega
+        return slope, slope + (turn + factor * dq).real * omega * omega
 
     def peak_size(self, x: float, gain: float, part: str) -> float:
         """|S| or |T| for L of the given gain."""
@@ -100,7 +100,7 @@ def scalar_loop(unit: TransferFunction) -> ScalarLoop:
     return ScalarLoop(unit)
 
 
-def newton_in_bracket(f: Slope, a: float, b: float, target: float = 0.0) -> float:
+def newton_in_bracket(f: Slope, a: float, b: float, at_a: float, at_b: float, target: float = 0.0) -> float:
     """Root of f - target between a and b by Newton's method, bisecting where a step would leave the bracket.
 
     Parameters
@@ -108,6 +108,8 @@ def newton_in_bracket(f: Slope, a: float, b: float, target: float = 0.0) -> floa
     f : callable
         x -> value and slope; f - target changes sign between a and b.
     a, b : float
+    at_a, at_b : float
+        Values of f there.
     target : float
 
     Returns
@@ -115,7 +117,6 @@ def newton_in_bracket(f: Slope, a: float, b: float, target: float = 0.0) -> floa
     float
         To rounding.
     """
-    (at_a, _), (at_b, _) = f(a), f(b)
     high_at_b = at_b > at_a
     x = a + (b - a) * (target - at_a) / (at_b - at_a) if at_b != at_a else 0.5 * (a + b)
     if not a < x < b:

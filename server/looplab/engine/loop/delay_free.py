@@ -33,14 +33,14 @@ def delay_free_response(
     ndarray, shape (count, p, c)
     """
     n, c = x0.shape
-    power = expm(A * h) if step is None else step
-    states = np.empty((n, count * c))
-    states[:, :c] = x0
+    power = (expm(A * h) if step is None else step).T
+    states = np.empty((count * c, n))
+    states[:c] = x0.T
     done = 1
     while done < count:
         more = min(done, count - done)
-        np.matmul(power, states[:, : more * c], out=states[:, done * c : (done + more) * c])
+        np.matmul(states[: more * c], power, out=states[done * c : (done + more) * c])
         done += more
         if done < count:
             power = power @ power
-    return (C @ states).reshape(-1, count, c).transpose(1, 0, 2)
+    return (states @ C.T).reshape(count, c, -1).transpose(0, 2, 1)

@@ -1,11 +1,16 @@
-"""A sampled curve with known slopes, as the cubic Hermite polynomial between its samples."""
+"""Sampled curves with known slopes, as cubic Hermite polynomials between their samples."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+Index = npt.NDArray[np.intp]
 
 # Gauss-Legendre nodes and weights on [0, 1]: exact to degree 7, the square of a cubic included.
 _NODES, _WEIGHTS = (0.5 * v for v in np.polynomial.legendre.leggauss(4))
@@ -20,7 +25,26 @@ _TO_NODES = np.array(
     ]
 ).T
 _TO_MOMENTS = np.array([_WEIGHTS, _WEIGHTS * _NODES])
-Cubic = tuple[float, float, float, float]
+
+
+def _split_moments(cubics: FloatArray) -> FloatArray:
+    """Integrals of |p| and x |p| over [0, 1] of cubics p that change sign there once, shape (2, m)."""
+    a, b, c, d = cubics
+    end = a + b + c + d
+    with np.errstate(all="ignore"):
+        x = a / (a - end)
+        for _ in range(3):
+            x = x - (a + x * (b + x * (c + x * d))) / (b + x * (2.0 * c + x * 3.0 * d))
+        # An error of x counts only by its square here; where three steps are not enough one careful root is found.
+        left = np.abs(a + x * (b + x * (c + x * d)))
+        lost = np.flatnonzero(~((left <= 1e-9 * np.maximum(np.abs(a), np.abs(end))) & (x >= 0.0) & (x <= 1.0)))
+    for i in lost.tolist():
+        x[i] = _cubic_root(*cubics[:, i].tolist())
+    before = x * (a + x * (b / 2.0 + x * (c / 3.0 + x * d / 4.0)))
+    before_x = x * x * (a / 2.0 + x * (b / 3.0 + x * (c / 4.0 + x * d / 5.0)))
+    after = a + b / 2.0 + c / 3.0 + d / 4.0 - before
+    after_x = a / 2.0 + b / 3.0 + c / 4.0 + d / 5.0 - before_x
+    return np.abs([before, before_x]) + np.abs([after, after_x])
 
 
 def _cubic_root(a: float, b: float, c: float, d: float) -> float:
@@ -60,18 +84,14 @@ def _turning_points(b: FloatArray, c: FloatArray, d: FloatArray) -> FloatArray:
     return np.where(np.isnan(near), far, near)
 
 
-class HermiteCurve:
-    """y(t) through samples y with slopes dy, shape (n,) each; slopes are right-hand limits."""
+class HermiteCurves:
+    """Curves y(t) through samples y with slopes dy, one a row, shape (k, n) each; slopes are right-hand limits."""
 
     def __init__(self, t: FloatArray, y: FloatArray, dy: FloatArray) -> None:
-        (only,) = HermiteCurve.several(t, y[None], dy[None])
-        self.__dict__.update(only.__dict__)
-
-    @classmethod
-    def several(cls, t: FloatArray, y: FloatArray, dy: FloatArray) -> list[HermiteCurve]:
-        """One curve for each row of y and dy, shape (k, n), over the same t."""
-        h = t[1:] - t[:-1]
-        pieces = np.empty((4, y.shape[0], h.size))
+        self.t, self.y = t, y
+        self.h = h = t[1:] - t[:-1]
+        # Ends and slopes of each piece, y0, m0, y1, m1 by rows.
+        self.pieces = pieces = np.empty((4, y.shape[0], h.size))
         pieces[0], pieces[2] = y[:, :-1], y[:, 1:]
         np.multiply(dy[:, :-1], h, out=pieces[1])
         np.multiply(dy[:, 1:], h, out=pieces[3])
@@ -79,105 +99,107 @@ class HermiteCurve:
         # The slope at the right end is the next sample's: at a kink it belongs to the next piece, so the cubic is
         # kept only where it agrees with the chord; elsewhere the parabola through both ends and the left slope.
         chord = pieces[2] - pieces[0]
-        d = np.abs(m0 + m1 - 2.0 * chord)
-        kink = d > 0.5 * np.maximum(np.abs(m0) + np.abs(m1), np.abs(chord)) + 1e-300
-        corner = None
+        bent = np.abs(m0 + m1 - 2.0 * chord)
+        kink = bent > 0.5 * np.maximum(np.abs(m0) + np.abs(m1), np.abs(chord)) + 1e-300
+        self._corner: npt.NDArray[np.bool_] | None = None
         if kink.any():
             m1[kink] = (2.0 * chord - m0)[kink]
-            corner = m1[:, :-1] * m0[:, 1:] < 0
-        rows, turning = (m0 * m1 < 0).nonzero()
-        a, b, a1, b1 = pieces[:, rows, turning]
-        d = b + b1 - 2.0 * (a1 - a)
-        c = a1 - a - b - d
+            self._corner = m1[:, :-1] * m0[:, 1:] < 0
+        self._chord = chord
+
+    def _cubics(self, flat: Index) -> FloatArray:
+        """Coefficients of a + b x + c x^2 + d x^3 for x in [0, 1] in pieces counted through the rows, shape (4, m)."""
+        a, b, a1, b1 = self.pieces.reshape(4, -1)[:, flat]
+        chord = a1 - a
+        d = b + b1 - 2.0 * chord
+        return np.stack([a, b, chord - b - d, d])
+
+    def _by_row(self, flat: Index) -> list[slice]:
+        """Which of those pieces belong to each row."""
+        ends = np.searchsorted(flat, self.h.size * np.arange(self.y.shape[0] + 1)).tolist()
+        return [slice(*pair) for pair in pairwise(ends)]
+
+    @cached_property
+    def _turns(self) -> tuple[Index, FloatArray, FloatArray]:
+        """Pieces with a turning point inside, counted through the rows, where in the piece and the value there."""
+        flat = np.flatnonzero(self.pieces[1] * self.pieces[3] < 0)
+        a, b, c, d = self._cubics(flat)
         x = _turning_points(b, c, d)
-        summits = a + x * (b + x * (c + x * d))
-        # What a curve goes up and down beyond the straight way between the samples.
-        detours = np.abs(summits - a) + np.abs(a1 - summits) - np.abs(a1 - a)
-        times = t[turning] + x * h[turning]
+        return flat, x, a + x * (b + x * (c + x * d))
+
+    @cached_property
+    def extrema(self) -> list[tuple[list[float], list[float]]]:
+        """Of each row times and values of the turning points, corners at samples included, increasing in time."""
+        flat, x, values = self._turns
+        piece = flat % self.h.size
+        times = self.t[piece] + x * self.h[piece]
         out = []
-        for i in range(y.shape[0]):
-            curve, mine = object.__new__(cls), rows == i
-            curve.t, curve.y, curve._h, curve._pieces = t, y[i], h, pieces[:, i]
-            curve._summits = times[mine], summits[mine]
-            curve._detours = float(detours[mine].sum())
-            curve._corners = np.zeros(0, dtype=int) if corner is None else 1 + np.flatnonzero(corner[i])
-            out.append(curve)
+        for i, mine in enumerate(self._by_row(flat)):
+            at, value = times[mine], values[mine]
+            if self._corner is not None:
+                corner = 1 + np.flatnonzero(self._corner[i])
+                at, value = np.append(at, self.t[corner]), np.append(value, self.y[i, corner])
+                order = at.argsort(kind="stable")
+                at, value = at[order], value[order]
+            out.append((at.tolist(), value.tolist()))
         return out
 
-    t: FloatArray
-    y: FloatArray
-    _h: FloatArray
-    _pieces: FloatArray  # ends and slopes per piece, y0, m0, y1, m1 by rows
-    _summits: tuple[FloatArray, FloatArray]  # times and values of the turning points inside pieces
-    _corners: npt.NDArray[np.intp]  # samples at which a kink is a turning point
-    _detours: float
+    @cached_property
+    def total_variation(self) -> list[float]:
+        """Of each row the sum of all ups and downs, turning points between the samples included."""
+        flat, _, values = self._turns
+        y0, y1 = self.pieces[::2].reshape(2, -1)[:, flat]
+        detour = np.abs(values - y0) + np.abs(y1 - values) - np.abs(y1 - y0)
+        straight = np.abs(self._chord).sum(axis=1).tolist()
+        return [s + float(detour[mine].sum()) for s, mine in zip(straight, self._by_row(flat), strict=True)]
 
-    def _cubic(self, i: int) -> Cubic:
-        """Coefficients of a + b x + c x^2 + d x^3 for x in [0, 1] in piece i."""
-        y0, m0, y1, m1 = self._pieces[:, i].tolist()
-        d = m0 + m1 - 2 * (y1 - y0)
-        return y0, m0, y1 - y0 - m0 - d, d
+    def absolute_integrals(self, levels: Sequence[float]) -> list[tuple[float, float, float]]:
+        """Of the first rows, one for each level, the integrals of |e|, e^2 and t|e| over the record, e = level - y.
 
-    def _time(self, i: int, x: float) -> float:
-        return float(self.t[i]) + x * float(self._h[i])
+        Pieces are split where e changes sign.
+        """
+        k, m = len(levels), self.h.size
+        level = np.array(levels)[:, None]
+        error = (_TO_NODES @ self.pieces[:, :k].reshape(4, -1)).reshape(4, k, m) - level
+        moments = _TO_MOMENTS @ np.abs(error).reshape(4, -1)
+        above = self.y[:k] > level
+        flat = np.flatnonzero(above[:, 1:] != above[:, :-1])
+        if flat.size:
+            cubics = self._cubics(flat)
+            cubics[0] -= level[flat // m, 0]
+            moments[:, flat] = _split_moments(cubics)
+        whole, moment = moments.reshape(2, k, m)
+        whole *= self.h
+        moment *= self.h * self.h
+        ise = np.tensordot(_WEIGHTS, error * error, axes=1) @ self.h
+        iae, itae = whole.sum(axis=1), whole @ self.t[:-1] + moment.sum(axis=1)
+        return list(zip(iae.tolist(), ise.tolist(), itae.tolist(), strict=True))
 
-    def _pieces_across(self, level: float) -> list[int]:
-        above = self.y > level
-        return np.flatnonzero(above[1:] != above[:-1]).tolist()
+    def _crossing(self, row: int, piece: int, level: float) -> float:
+        y0, m0, y1, m1 = self.pieces[:, row, piece].tolist()
+        d = m0 + m1 - 2.0 * (y1 - y0)
+        x = _cubic_root(y0 - level, m0, y1 - y0 - m0 - d, d)
+        return float(self.t[piece]) + x * float(self.h[piece])
 
-    def _crossing(self, piece: int, level: float) -> float:
-        a, b, c, d = self._cubic(piece)
-        return float(self.t[piece]) + _cubic_root(a - level, b, c, d) * float(self._h[piece])
+    def crossings(self, row: int, level: float) -> list[float]:
+        """Times at which a curve crosses a level, increasing."""
+        above = self.y[row] > level
+        return [self._crossing(row, i, level) for i in np.flatnonzero(above[1:] != above[:-1]).tolist()]
 
-    def crossings(self, level: float) -> FloatArray:
-        """Times at which the curve crosses a level, increasing."""
-        return np.array([self._crossing(i, level) for i in self._pieces_across(level)])
-
-    def first_crossing(self, level: float) -> float | None:
-        """Time at which the curve first crosses a level."""
-        above = self.y > level
+    def first_crossing(self, row: int, level: float) -> float | None:
+        """Time at which a curve first crosses a level."""
+        above = self.y[row] > level
         changed = above != above[0]
         i = int(changed.argmax())
-        return self._crossing(i - 1, level) if changed[i] else None
+        return self._crossing(row, i - 1, level) if changed[i] else None
 
-    def last_outside(self, level: float, band: float) -> float | None:
-        """When the curve comes within level +- band for the rest of the record; None where it ends outside."""
-        outside = np.abs(self.y - level) > band
+    def last_outside(self, row: int, level: float, band: float) -> float | None:
+        """When a curve comes within level +- band for the rest of the record; None where it ends outside."""
+        y = self.y[row]
+        outside = np.abs(y - level) > band
         if outside[-1]:
             return None
         i = outside.size - 1 - int(outside[::-1].argmax())
         if not outside[i]:
             return 0.0
-        return self._crossing(i, level + band if self.y[i] > level else level - band)
-
-    def extrema(self) -> tuple[list[float], list[float]]:
-        """Times and values of the turning points, corners at samples included, increasing in time."""
-        times, values = self._summits
-        if self._corners.size:
-            times, values = np.append(times, self.t[self._corners]), np.append(values, self.y[self._corners])
-            order = times.argsort(kind="stable")
-            times, values = times[order], values[order]
-        return times.tolist(), values.tolist()
-
-    def absolute_integrals(self, level: float) -> tuple[float, float, float]:
-        """Integrals of |e|, e^2 and t|e| over the record, e = level - y; pieces are split where e changes sign."""
-        h, start = self._h, self.t[:-1]
-        error = _TO_NODES @ self._pieces - level
-        whole, moment = _TO_MOMENTS @ np.abs(error)
-        for i in self._pieces_across(level):
-            a, b, c, d = self._cubic(i)
-            a -= level
-            x = _cubic_root(a, b, c, d)
-            before = x * (a + x * (b / 2 + x * (c / 3 + x * d / 4)))
-            after = a + b / 2 + c / 3 + d / 4 - before
-            before_x = x * x * (a / 2 + x * (b / 3 + x * (c / 4 + x * d / 5)))
-            after_x = a / 2 + b / 3 + c / 4 + d / 5 - before_x
-            whole[i], moment[i] = abs(before) + abs(after), abs(before_x) + abs(after_x)
-        whole *= h
-        moment *= h * h
-        ise = _WEIGHTS @ np.square(error, out=error) @ h
-        return float(whole.sum()), float(ise), float(start @ whole + moment.sum())
-
-    def total_variation(self) -> float:
-        """Sum of all ups and downs, turning points between the samples included."""
-        return float(np.abs(self.y[1:] - self.y[:-1]).sum()) + self._detours
+        return self._crossing(row, i, level + band if y[i] > level else level - band)
