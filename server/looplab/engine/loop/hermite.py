@@ -25,6 +25,8 @@ _TO_NODES = np.array(
     ]
 ).T
 _TO_MOMENTS = np.array([_WEIGHTS, _WEIGHTS * _NODES])
+# Integrals over [0, 1] of the powers 1, x, x^2, x^3, and of x times them.
+_INTEGRAL, _MOMENT = 1.0 / np.arange(1.0, 5.0), 1.0 / np.arange(2.0, 6.0)
 
 
 def _split_moments(cubics: FloatArray) -> FloatArray:
@@ -33,18 +35,19 @@ def _split_moments(cubics: FloatArray) -> FloatArray:
     end = a + b + c + d
     with np.errstate(all="ignore"):
         x = a / (a - end)
-        for _ in range(3):
+        for _ in range(2):
             x = x - (a + x * (b + x * (c + x * d))) / (b + x * (2.0 * c + x * 3.0 * d))
-        # An error of x counts only by its square here; where three steps are not enough one careful root is found.
+        # An error of x counts only by its square here; where two steps are not enough one careful root is found.
         left = np.abs(a + x * (b + x * (c + x * d)))
-        lost = np.flatnonzero(~((left <= 1e-9 * np.maximum(np.abs(a), np.abs(end))) & (x >= 0.0) & (x <= 1.0)))
+        lost = np.flatnonzero(~((left <= 1e-8 * np.maximum(np.abs(a), np.abs(end))) & (x >= 0.0) & (x <= 1.0)))
     for i in lost.tolist():
         x[i] = _cubic_root(*cubics[:, i].tolist())
-    before = x * (a + x * (b / 2.0 + x * (c / 3.0 + x * d / 4.0)))
-    before_x = x * x * (a / 2.0 + x * (b / 3.0 + x * (c / 4.0 + x * d / 5.0)))
-    after = a + b / 2.0 + c / 3.0 + d / 4.0 - before
-    after_x = a / 2.0 + b / 3.0 + c / 4.0 + d / 5.0 - before_x
-    return np.abs([before, before_x]) + np.abs([after, after_x])
+    power = np.empty((5, x.size))
+    power[0] = x
+    for i in range(4):
+        np.multiply(power[i], x, out=power[i + 1])
+    before = np.stack([_INTEGRAL @ (cubics * power[:4]), _MOMENT @ (cubics * power[1:])])
+    return np.abs(before) + np.abs(np.stack([_INTEGRAL @ cubics, _MOMENT @ cubics]) - before)
 
 
 def _cubic_root(a: float, b: float, c: float, d: float) -> float:
@@ -160,8 +163,9 @@ class HermiteCurves:
         """
         k, m = len(levels), self.h.size
         level = np.array(levels)[:, None]
-        error = (_TO_NODES @ self.pieces[:, :k].reshape(4, -1)).reshape(4, k, m) - level
-        moments = _TO_MOMENTS @ np.abs(error).reshape(4, -1)
+        error = _TO_NODES @ self.pieces[:, :k].reshape(4, -1)
+        error -= np.repeat(level, m)
+        moments = _TO_MOMENTS @ np.abs(error)
         above = self.y[:k] > level
         flat = np.flatnonzero(above[:, 1:] != above[:, :-1])
         if flat.size:
@@ -171,7 +175,7 @@ class HermiteCurves:
         whole, moment = moments.reshape(2, k, m)
         whole *= self.h
         moment *= self.h * self.h
-        ise = np.tensordot(_WEIGHTS, error * error, axes=1) @ self.h
+        ise = (_WEIGHTS @ np.square(error, out=error)).reshape(k, m) @ self.h
         iae, itae = whole.sum(axis=1), whole @ self.t[:-1] + moment.sum(axis=1)
         return list(zip(iae.tolist(), ise.tolist(), itae.tolist(), strict=True))
 
