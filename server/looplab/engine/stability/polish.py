@@ -9,6 +9,9 @@ from looplab.engine.systems.transfer_function import TransferFunction
 
 ComplexArray = npt.NDArray[np.complex128]
 
+# Steps this small, relative to the root, are rounding.
+SETTLED = 1e-15
+
 
 def polish_closed_loop_poles(
     L: TransferFunction, guess: ComplexArray, gain: npt.ArrayLike = 1.0, steps: int = 4
@@ -45,7 +48,10 @@ def polish_closed_loop_poles(
             if not left:
                 break
             step = miss / slope
-            s = s - np.where(np.isfinite(step), step, 0.0)
+            step[~np.isfinite(step)] = 0.0
+            s = s - step
+            if not (np.abs(step) > SETTLED * np.abs(s)).any():
+                break
         # Next to an open-loop pole L cannot be known better than the rounding of s allows.
         knowable = 8.0 * np.finfo(float).eps * np.abs(s * slope)
         good = np.abs(miss) < np.maximum(1e-8, np.minimum(knowable, 0.1))
