@@ -5,12 +5,20 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from looplab.engine.systems.transfer_function import TransferFunction
+from looplab.engine.systems.transfer_function import SMALL_ORDER, TransferFunction
 
 ComplexArray = npt.NDArray[np.complex128]
 
 # Steps this small, relative to the root, are rounding.
 SETTLED = 1e-15
+
+
+def _log_of_factors(away: ComplexArray, zeros: int) -> ComplexArray:
+    """ln of prod(s - z)/prod(s - p) up to turns; one logarithm where the products stay in double precision."""
+    if away.shape[-1] <= SMALL_ORDER:
+        return np.log(away[..., :zeros].prod(axis=-1) / away[..., zeros:].prod(axis=-1))
+    logs = np.log(away)
+    return np.asarray(logs[..., :zeros].sum(axis=-1) - logs[..., zeros:].sum(axis=-1))
 
 
 def polish_closed_loop_poles(
@@ -42,7 +50,7 @@ def polish_closed_loop_poles(
         offset = np.log(np.asarray(gain, dtype=float) * L.gain + 0j) - 1j * np.pi
         for left in range(steps, -1, -1):
             away = s[..., None] - roots
-            miss = np.log(away) @ sign + (offset - L.theta * s)
+            miss = _log_of_factors(away, L.zeros.size) + (offset - L.theta * s)
             miss.imag -= 2.0 * np.pi * np.round(miss.imag / (2.0 * np.pi))
             slope = np.reciprocal(away) @ sign - L.theta
             if not left:

@@ -193,32 +193,31 @@ def breakaway_points(L: TransferFunction) -> tuple[Breakaway, ...]:
     N, D = from_roots(L.zeros / unit), from_roots(L.poles / unit)
     turning: FloatArray = np.polysub(np.polymul(np.polyder(D), N), np.polymul(np.polyder(N), D))
     turning = np.polyadd(turning, L.theta * unit * np.polymul(N, D))
-    candidates = unit * roots(turning)
-    out: list[Breakaway] = []
+    s = _newton_on_log_derivative(L, unit * roots(turning))
+    with np.errstate(all="ignore"):
+        K = -1.0 / L(s)
+        meets = np.isfinite(K) & (K.real > 0) & (np.abs(K.imag) < 1e-7 * np.abs(K))
     repeated = L.poles[[np.count_nonzero(L.poles == p) > 1 for p in L.poles]]
-    for s in candidates:
-        s = _newton_on_log_derivative(L, s)
-        if repeated.size and np.min(np.abs(repeated - s)) < 1e-5 * max(1.0, abs(s)):
-            continue
-        value = L(s)
-        if not (np.isfinite(value) and value != 0):
-            continue
-        K = -1.0 / value
-        fresh = all(abs(b.s - s) > 1e-6 * max(1.0, abs(s)) for b in out)
-        if K.real > 0 and abs(K.imag) < 1e-7 * abs(K) and fresh:
-            out.append(Breakaway(complex(s.real, 0.0 if abs(s.imag) < 1e-9 * abs(s) else s.imag), float(K.real)))
+    if repeated.size:
+        meets &= np.abs(repeated[:, None] - s).min(axis=0) >= 1e-5 * np.maximum(1.0, np.abs(s))
+    out: list[Breakaway] = []
+    for at, gain in zip(s[meets].tolist(), K[meets].real.tolist(), strict=True):
+        if all(abs(b.s - at) > 1e-6 * max(1.0, abs(at)) for b in out):
+            out.append(Breakaway(complex(at.real, 0.0 if abs(at.imag) < 1e-9 * abs(at) else at.imag), gain))
     return tuple(sorted(out, key=lambda b: b.K))
 
 
-def _newton_on_log_derivative(L: TransferFunction, s: complex) -> complex:
-    for _ in range(4):
-        with np.errstate(all="ignore"):
-            f = complex(L.log_derivative(np.array([s]))[0])
-            slope = (-1.0 / (s - L.zeros) ** 2).sum() + (1.0 / (s - L.poles) ** 2).sum()
-            step = np.divide(f, slope)
-        if not np.isfinite(step) or abs(step) > 0.1 * max(abs(s), 1e-6):
-            break
-        s = s - step
+def _newton_on_log_derivative(L: TransferFunction, s: ComplexArray) -> ComplexArray:
+    """Roots of L'/L near s, shape of s; one whose step is too long stays where it is."""
+    moving = np.ones(s.shape, dtype=bool)
+    with np.errstate(all="ignore"):
+        for _ in range(4):
+            column = s[:, None]
+            to_zeros, to_poles = 1.0 / (column - L.zeros), 1.0 / (column - L.poles)
+            value = to_zeros.sum(axis=1) - to_poles.sum(axis=1) - L.theta
+            step = value / ((to_poles * to_poles).sum(axis=1) - (to_zeros * to_zeros).sum(axis=1))
+            moving &= np.abs(step) <= 0.1 * np.maximum(np.abs(s), 1e-6)
+            s = np.where(moving, s - step, s)
     return s
 
 
