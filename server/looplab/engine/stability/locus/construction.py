@@ -191,8 +191,10 @@ def breakaway_points(L: TransferFunction) -> tuple[Breakaway, ...]:
     sizes = np.abs(np.concatenate([L.zeros, L.poles]))
     unit = float(np.exp(np.mean(np.log(sizes[sizes > 0])))) if (sizes > 0).any() else 1.0
     N, D = from_roots(L.zeros / unit), from_roots(L.poles / unit)
-    turning: FloatArray = np.polysub(np.polymul(np.polyder(D), N), np.polymul(np.polyder(N), D))
-    turning = np.polyadd(turning, L.theta * unit * np.polymul(N, D))
+    turning = L.theta * unit * np.convolve(N, D)
+    turning[1:] += np.convolve(_derivative(D), N)
+    if N.size > 1:
+        turning[1:] -= np.convolve(_derivative(N), D)
     s = _newton_on_log_derivative(L, unit * roots(turning))
     with np.errstate(all="ignore"):
         K = -1.0 / L(s)
@@ -205,6 +207,10 @@ def breakaway_points(L: TransferFunction) -> tuple[Breakaway, ...]:
         if all(abs(b.s - at) > 1e-6 * max(1.0, abs(at)) for b in out):
             out.append(Breakaway(complex(at.real, 0.0 if abs(at.imag) < 1e-9 * abs(at) else at.imag), gain))
     return tuple(sorted(out, key=lambda b: b.K))
+
+
+def _derivative(coefficients: FloatArray) -> FloatArray:
+    return coefficients[:-1] * np.arange(coefficients.size - 1, 0, -1.0)
 
 
 def _newton_on_log_derivative(L: TransferFunction, s: ComplexArray) -> ComplexArray:

@@ -42,40 +42,44 @@ def _nearest_neighbour(points: ComplexArray) -> FloatArray:
     return gap.min(axis=-1)
 
 
-def _join(L: TransferFunction, gains: FloatArray, poles: ComplexArray) -> ComplexArray:
-    """Order each row so that columns are continuous branches, shape (n, m).
+def _links(L: TransferFunction, gains: FloatArray, poles: ComplexArray) -> npt.NDArray[np.intp]:
+    """Which pole of the next gain each pole becomes, shape (m-1, n).
 
-    Each pole is followed along its tangent ds/dK = -L/(K L') to the nearest pole of the next gain, and assigned where
-    that is unclear.
+    Each is followed along its tangent ds/dK = -L/(K L') to the nearest pole there, and assigned where that is unclear.
     """
-    m, n = poles.shape
     with np.errstate(all="ignore"):
         ahead = -np.log(gains[1:] / gains[:-1])[:, None] / L.log_derivative(poles[:-1])
     # At a meeting point the tangent is lost; next to one it points too far.
     ahead[~(np.abs(ahead) < 0.5 * _nearest_neighbour(poles[:-1]))] = 0.0
     gap = np.abs((poles[:-1] + ahead)[:, :, None] - poles[1:, None, :])
     nearest = gap.argmin(axis=2)
-    for i in np.flatnonzero((np.sort(nearest, axis=1) != np.arange(n)).any(axis=1)).tolist():
+    for i in np.flatnonzero((np.sort(nearest, axis=1) != np.arange(poles.shape[1])).any(axis=1)).tolist():
         from scipy.optimize import linear_sum_assignment
 
         nearest[i] = linear_sum_assignment(np.abs(poles[i][:, None] - poles[i + 1][None, :]) ** 2)[1]
-    order = [list(range(n))]
-    for step in nearest.tolist():
+    return nearest
+
+
+def _joined(poles: ComplexArray, links: npt.NDArray[np.intp]) -> ComplexArray:
+    """Branches as rows, shape (n, m)."""
+    order = [list(range(poles.shape[1]))]
+    for step in links.tolist():
         order.append([step[j] for j in order[-1]])
-    return np.take_along_axis(poles, np.array(order).reshape(m, n), axis=1).T
+    return np.take_along_axis(poles, np.array(order).reshape(poles.shape), axis=1).T
 
 
-def _needed_parts(branches: ComplexArray, size: float) -> npt.NDArray[np.intp]:
+def _needed_parts(poles: ComplexArray, links: npt.NDArray[np.intp], size: float) -> npt.NDArray[np.intp]:
     """Into how many parts each interval of the gain must be cut for the branches to look smooth, shape (m-1,)."""
-    step = np.diff(branches, axis=1)
-    length, away = np.abs(step), np.abs(branches)
-    inside = np.minimum(away[:, 1:], away[:, :-1]) < 3.0 * size
-    parts = np.where(inside, length, 0.0).max(axis=0, initial=0.0) / (LONGEST_STEP * size)
+    step = np.take_along_axis(poles[1:], links, axis=1) - poles[:-1]
+    length, near = np.abs(step), np.abs(poles) < 3.0 * size
+    inside = near[:-1] | np.take_along_axis(near[1:], links, axis=1)
+    parts = np.where(inside, length, 0.0).max(axis=1, initial=0.0) / (LONGEST_STEP * size)
     with np.errstate(all="ignore"):
-        turn = np.abs(np.angle(step[:, 1:] / step[:, :-1]))
+        turn = np.abs(np.angle(np.take_along_axis(step[1:], links[:-1], axis=1) / step[:-1]))
     # A right-angled break-away is a true corner; elsewhere a turn wants more points.
-    seen = (np.minimum(length[:, 1:], length[:, :-1]) > 0.004 * size) & inside[:, 1:]
-    bend = np.where(seen, turn, 0.0).max(axis=0, initial=0.0) / LARGEST_TURN
+    after = np.take_along_axis(length[1:], links[:-1], axis=1)
+    seen = (np.minimum(after, length[:-1]) > 0.004 * size) & inside[:-1]
+    bend = np.where(seen, turn, 0.0).max(axis=1, initial=0.0) / LARGEST_TURN
     np.maximum(parts[:-1], bend, out=parts[:-1])
     np.maximum(parts[1:], bend, out=parts[1:])
     return np.clip(np.ceil(parts), 1, MOST_PARTS).astype(np.intp)
@@ -85,11 +89,11 @@ def rational_branches(L: TransferFunction, gains: FloatArray, size: float) -> tu
     """Add gains where a branch jumps or turns, until it looks smooth in a window of the given size."""
     poles = _poles_at(L, gains)
     for _ in range(5):
-        branches = _join(L, gains, poles)
-        parts = _needed_parts(branches, size)
+        links = _links(L, gains, poles)
+        parts = _needed_parts(poles, links, size)
         cut = np.flatnonzero(parts > 1)
         if not cut.size or gains.size > MAX_GAINS:
-            return gains, branches
+            return gains, _joined(poles, links)
         count = parts[cut] - 1
         left = np.repeat(cut, count)
         part = (1 + np.arange(left.size) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(parts[cut], count)
@@ -99,4 +103,4 @@ def rational_branches(L: TransferFunction, gains: FloatArray, size: float) -> tu
         gains, poles = np.concatenate([gains, extra]), np.concatenate([poles, _poles_at(L, extra)])
         order = np.argsort(gains, kind="stable")
         gains, poles = gains[order], poles[order]
-    return gains, _join(L, gains, poles)
+    return gains, _joined(poles, _links(L, gains, poles))
