@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from looplab.engine.stability.locus.pairs import nearest_pairs
 from looplab.engine.stability.polish import polish_closed_loop_poles
 from looplab.engine.systems.realization import realize
 from looplab.engine.systems.transfer_function import TransferFunction
@@ -45,7 +46,7 @@ def _nearest_neighbour(points: ComplexArray) -> FloatArray:
 def _links(L: TransferFunction, gains: FloatArray, poles: ComplexArray) -> npt.NDArray[np.intp]:
     """Which pole of the next gain each pole becomes, shape (m-1, n).
 
-    Each is followed along its tangent ds/dK = -L/(K L') to the nearest pole there, and assigned where that is unclear.
+    Each is followed along its tangent ds/dK = -L/(K L') to the nearest pole there; where two want the same one, the nearer gets it.
     """
     with np.errstate(all="ignore"):
         ahead = -np.log(gains[1:] / gains[:-1])[:, None] / L.log_derivative(poles[:-1])
@@ -54,9 +55,8 @@ def _links(L: TransferFunction, gains: FloatArray, poles: ComplexArray) -> npt.N
     gap = np.abs((poles[:-1] + ahead)[:, :, None] - poles[1:, None, :])
     nearest = gap.argmin(axis=2)
     for i in np.flatnonzero((np.sort(nearest, axis=1) != np.arange(poles.shape[1])).any(axis=1)).tolist():
-        from scipy.optimize import linear_sum_assignment
-
-        nearest[i] = linear_sum_assignment(np.abs(poles[i][:, None] - poles[i + 1][None, :]) ** 2)[1]
+        for a, b in nearest_pairs(poles[i] + ahead[i], poles[i + 1]):
+            nearest[i, a] = b
     return nearest
 
 
