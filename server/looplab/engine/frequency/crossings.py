@@ -134,7 +134,7 @@ def _gain_crossovers(L: TransferFunction, grid: Sampled) -> FloatArray:
         f, at_grid = scalar_loop(L.unit).log_magnitude, grid.curve.log_magnitude
         return np.array(
             [
-                exp(newton_in_bracket(f, log(omega[i]), log(omega[i + 1]), *at_grid[i : i + 2].tolist(), level))
+                exp(newton_in_bracket(f, log(omega[i]), log(omega[i + 1]), at_grid[i : i + 2].tolist(), level))
                 for i in at.tolist()
             ]
         )
@@ -161,8 +161,9 @@ def _phase_crossovers(L: TransferFunction, omega: FloatArray, phase: FloatArray)
 
     if at.size <= FEW:
         f = scalar_loop(L).phase
-        ends = zip(a.tolist(), b.tolist(), phase[at].tolist(), phase[at + 1].tolist(), level, strict=True)
-        return np.array([exp(newton_in_bracket(f, *end)) for end in ends]), np.array(direction)
+        ends = np.stack([phase[at], phase[at + 1]], axis=1).tolist()
+        brackets = zip(a.tolist(), b.tolist(), ends, level, strict=True)
+        return np.array([exp(newton_in_bracket(f, *bracket)) for bracket in brackets]), np.array(direction)
     return np.exp(refine_brackets(lambda x: phase_rad(L, np.exp(x)) - target, a, b)), np.array(direction)
 
 

@@ -82,7 +82,7 @@ def _peaks_on(grid: Sampled) -> list[tuple[float, float]]:
             at = at[np.argsort(np.maximum(size[at], size[at + 1]))[-8:]]
         for i in at.tolist():
             slope = partial(loop.sensitivity_slope, gain=gain, part=part)
-            x = newton_in_bracket(slope, log(omega[i]), log(omega[i + 1]), *slopes[row, i : i + 2].tolist())
+            x = newton_in_bracket(slope, log(omega[i]), log(omega[i + 1]), slopes[row, i : i + 2].tolist())
             peak = loop.peak_size(x, gain, part)
             if peak > top:
                 top, where = peak, exp(x)

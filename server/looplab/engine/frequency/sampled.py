@@ -59,7 +59,7 @@ class UnitCurve:
 
     @cached_property
     def rate(self) -> ComplexArray:
-        return _read_only(self.omega * self.unit.log_derivative(1j * self.omega))
+        return _read_only(self.omega * self.unit.log_derivative((1j * self.omega).astype(complex)))
 
 
 class Sampled:
@@ -102,7 +102,7 @@ def search_grid(unit: TransferFunction, low: float, high: float) -> FloatArray:
     x = np.log(omega)
     turning = []
     with np.errstate(all="ignore"):
-        rate = omega * unit.log_derivative(1j * omega)
+        rate = omega * unit.log_derivative((1j * omega).astype(complex))
         for slope, on_grid in ((magnitude_slope, -rate.imag), (phase_slope, rate.real)):
             sign = np.sign(on_grid)
             at = np.flatnonzero(sign[1:] * sign[:-1] < 0)

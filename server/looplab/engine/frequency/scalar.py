@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from itertools import zip_longest
 
@@ -58,7 +58,7 @@ class ScalarLoop:
             slope += sense * (a / size) / size
         return out, slope * omega
 
-    def _value_and_rates(self, s: complex, gain: float) -> tuple[complex, complex, complex]:
+    def value_and_rates(self, s: complex, gain: float) -> tuple[complex, complex, complex]:
         """L, q = L'/L and q' at s."""
         value = self.sign * gain * cmath.exp(-self.theta * s)
         q, dq = complex(-self.theta), 0j
@@ -81,7 +81,7 @@ class ScalarLoop:
         With q = L'/L they are omega Im(T q) and -omega Im(S q); S' = -S T q and T' = S T q.
         """
         omega = math.exp(x)
-        value, q, dq = self._value_and_rates(1j * omega, gain)
+        value, q, dq = self.value_and_rates(1j * omega, gain)
         S = 1.0 / ((1.0 + value) or TINY)
         turn = value * S * S * q * q
         factor = value * S if part == "S" else -S
@@ -90,7 +90,7 @@ class ScalarLoop:
 
     def peak_size(self, x: float, gain: float, part: str) -> float:
         """|S| or |T| for L of the given gain."""
-        value, _, _ = self._value_and_rates(1j * math.exp(x), gain)
+        value, _, _ = self.value_and_rates(1j * math.exp(x), gain)
         return abs((1.0 if part == "S" else value) / ((1.0 + value) or TINY))
 
 
@@ -100,7 +100,7 @@ def scalar_loop(unit: TransferFunction) -> ScalarLoop:
     return ScalarLoop(unit)
 
 
-def newton_in_bracket(f: Slope, a: float, b: float, at_a: float, at_b: float, target: float = 0.0) -> float:
+def newton_in_bracket(f: Slope, a: float, b: float, ends: Sequence[float], target: float = 0.0) -> float:
     """Root of f - target between a and b by Newton's method, bisecting where a step would leave the bracket.
 
     Parameters
@@ -108,8 +108,8 @@ def newton_in_bracket(f: Slope, a: float, b: float, at_a: float, at_b: float, ta
     f : callable
         x -> value and slope; f - target changes sign between a and b.
     a, b : float
-    at_a, at_b : float
-        Values of f there.
+    ends : two floats
+        f(a) and f(b).
     target : float
 
     Returns
@@ -117,6 +117,7 @@ def newton_in_bracket(f: Slope, a: float, b: float, at_a: float, at_b: float, ta
     float
         To rounding.
     """
+    at_a, at_b = ends
     high_at_b = at_b > at_a
     x = a + (b - a) * (target - at_a) / (at_b - at_a) if at_b != at_a else 0.5 * (a + b)
     if not a < x < b:

@@ -146,9 +146,7 @@ def _states(F: FloatArray, x0: FloatArray, grid: DelayGrid, count: int) -> Float
     x = _march(F, x0, grid.pieces, total)
     J, (_, n, c) = F.shape[0], x.shape
     first, piece, row, column = (J - 1) * grid.pieces, *x.strides
-    return as_strided(
-        x[first:], (count, J, n, c), (every * piece, -grid.pieces * piece, row, column), writeable=False
-    )
+    return as_strided(x[first:], (count, J, n, c), (every * piece, -grid.pieces * piece, row, column), writeable=False)
 
 
 def delayed_response(
@@ -181,6 +179,7 @@ def delayed_response(
     NoConvergence
         The dead time is too long for the speed of the loop and the horizon.
     """
+
     def series(grid: DelayGrid, largest: float = np.inf) -> tuple[FloatArray, FloatArray] | None:
         h, terms = grid.h / grid.pieces_per_step, int(grid.count * grid.h / theta) + 2
         return shift_series(symbol, h, grid.samples, terms, neutral, largest)

@@ -94,10 +94,10 @@ def _disturbed(curves: HermiteCurves, row: int, final: float, out: Numbers, why:
     """Peak and settling of a response that ends near where it began (a load step under control)."""
     t, y = curves.extrema[row]
     ends = [0, -1]
-    out["t_peak"], out["peak"] = max(
+    out["t_peak"], peak = max(
         zip([*t, *curves.t[ends].tolist()], [*y, *curves.y[row, ends].tolist()], strict=True), key=lambda at: abs(at[1])
     )
-    span = abs(out["peak"])
+    out["peak"], span = peak, abs(peak)
     out["t_settle"] = curves.last_outside(row, final, BAND * span) if span else 0.0
     if out["t_settle"] is None:
         why["t_settle"] = "undefined: not within 2 % of the largest deviation at the end of the horizon"
@@ -182,7 +182,8 @@ def loop_metrics(step: ClosedLoopStep, *, stable: bool) -> tuple[StepMetrics, St
     if step.setpoint.t.size == step.load.t.size:
         setpoint, load = _judge([step.setpoint, step.load], [1.0, 0.0], stable)
     else:
-        setpoint, load = (step_metrics(r, setpoint=to, stable=stable) for r, to in ((step.setpoint, 1.0), (step.load, 0.0)))
+        setpoint = step_metrics(step.setpoint, setpoint=1.0, stable=stable)
+        load = step_metrics(step.load, setpoint=0.0, stable=stable)
     return setpoint, load
 
 

@@ -144,9 +144,11 @@ def _cut(t: FloatArray, rows: FloatArray, final: float | None, why: str) -> Resp
     with np.errstate(invalid="ignore"):
         inside = np.abs(rows[:2]) < LARGEST_VALUE
     if inside.all():
-        return Response(t, *rows, final)
+        y, u, dy, du = rows
+        return Response(t, y, u, dy, du, final)
     stop = int(inside.all(axis=0).argmin())
-    return Response(t[:stop], *rows[:, :stop], final, float(t[stop]), why)
+    y, u, dy, du = rows[:, :stop]
+    return Response(t[:stop], y, u, dy, du, final, float(t[stop]), why)
 
 
 def _final_values(loop: FeedbackLoop) -> tuple[float | None, float | None]:

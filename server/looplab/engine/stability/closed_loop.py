@@ -13,7 +13,7 @@ from looplab.engine.frequency.nyquist import NyquistCount, nyquist_count
 from looplab.engine.loop.feedback_loop import FeedbackLoop
 from looplab.engine.loop.step_response import loop_equations
 from looplab.engine.stability.delay_line import delay_line_matrix
-from looplab.engine.stability.polish import polish_closed_loop_poles
+from looplab.engine.stability.polish import polish_closed_loop_poles, polish_few
 from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.transfer_function import TransferFunction
 
@@ -115,8 +115,7 @@ def closed_loop_poles(loop: FeedbackLoop) -> ClosedLoopPoles:
     """
     if loop.theta == 0.0 or loop.open_loop.gain == 0.0:
         poles = np.linalg.eigvals(loop_equations(loop).closed_loop_matrix()).astype(complex)
-        polished, good = polish_closed_loop_poles(loop.open_loop, poles, steps=2)
-        return ClosedLoopPoles(_sorted(np.where(good, polished, poles)), True)
+        return ClosedLoopPoles(_sorted(polish_few(loop.open_loop, poles)), True)
     reason = "dead time makes infinitely many closed-loop poles; the rightmost are listed"
     poles = _sorted(_dead_time_poles(loop))
     return ClosedLoopPoles(poles[:24], False, reason)

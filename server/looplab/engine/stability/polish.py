@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import cmath
+from math import isfinite
+
 import numpy as np
 import numpy.typing as npt
 
+from looplab.engine.frequency.scalar import scalar_loop
 from looplab.engine.systems.transfer_function import SMALL_ORDER, TransferFunction
 
 ComplexArray = npt.NDArray[np.complex128]
 
 # Steps this small, relative to the root, are rounding.
 SETTLED = 1e-15
+EPSILON = float(np.finfo(float).eps)
 
 
 def _log_of_factors(away: ComplexArray, zeros: int) -> ComplexArray:
@@ -61,7 +66,42 @@ def polish_closed_loop_poles(
             if not (np.abs(step) > SETTLED * np.abs(s)).any():
                 break
         # Next to an open-loop pole L cannot be known better than the rounding of s allows.
-        knowable = 8.0 * np.finfo(float).eps * np.abs(s * slope)
+        knowable = 8.0 * EPSILON * np.abs(s * slope)
         good = np.abs(miss) < np.maximum(1e-8, np.minimum(knowable, 0.1))
         good &= np.abs(s - guess) <= 0.3 * np.abs(guess) + 1e-6
     return s, good
+
+
+def polish_few(L: TransferFunction, guess: ComplexArray, steps: int = 2) -> ComplexArray:
+    """The same for a handful of poles, on plain numbers; a pole whose Newton steps lead nowhere stays as guessed.
+
+    Parameters
+    ----------
+    L : TransferFunction
+    guess : ndarray of complex, shape (n,)
+        Closed under conjugation [rad/time].
+    steps : int
+
+    Returns
+    -------
+    ndarray of complex, shape (n,)
+    """
+    loop, gain = scalar_loop(L.unit), abs(L.gain)
+    done: dict[complex, complex] = {}
+    for start in guess.tolist():
+        if start.conjugate() in done:
+            done[start] = done[start.conjugate()].conjugate()
+            continue
+        s, miss, rate = start, 1.0 + 0j, 0j
+        for left in range(steps, -1, -1):
+            value, rate, _ = loop.value_and_rates(s, gain)
+            if not (isfinite(abs(value)) and value and rate):
+                break
+            miss = cmath.log(-value)
+            if left:
+                s -= miss / rate
+        # Next to an open-loop pole L cannot be known better than the rounding of s allows.
+        knowable = 8.0 * EPSILON * abs(s * rate)
+        good = abs(miss) < max(1e-8, min(knowable, 0.1)) and abs(s - start) <= 0.3 * abs(start) + 1e-6
+        done[start] = s if good else start
+    return np.array([done[start] for start in guess.tolist()], dtype=complex)

@@ -46,7 +46,8 @@ def _nearest_neighbour(points: ComplexArray) -> FloatArray:
 def _links(L: TransferFunction, gains: FloatArray, poles: ComplexArray) -> npt.NDArray[np.intp]:
     """Which pole of the next gain each pole becomes, shape (m-1, n).
 
-    Each is followed along its tangent ds/dK = -L/(K L') to the nearest pole there; where two want the same one, the nearer gets it.
+    Each is followed along its tangent ds/dK = -L/(K L') to the nearest pole there; of two that want the same one the
+    nearer gets it.
     """
     with np.errstate(all="ignore"):
         ahead = -np.log(gains[1:] / gains[:-1])[:, None] / L.log_derivative(poles[:-1])
