@@ -168,7 +168,7 @@ def nyquist_curve(L: TransferFunction, step: float = 0.03) -> NyquistCurve:
     if not drawn.all():
         omega, value, size = omega[drawn], value[drawn], size[drawn]
     if not omega.size:
-        return NyquistCurve(omega, value.real, value.imag)
+        return NyquistCurve(omega, value.real.copy(), value.imag.copy())
     near = np.minimum(size[1:], size[:-1])
     length = np.abs(value[1:] - value[:-1]) / (step * np.sqrt((near + SMALLEST_SEEN) * (1.0 + near)))
     length[near > OUT_OF_PICTURE] *= 0.1
@@ -188,4 +188,4 @@ def nyquist_curve(L: TransferFunction, step: float = 0.03) -> NyquistCurve:
         omega, value = omega[order], value[order]
     else:
         omega, value = omega[keep], value[keep]
-    return NyquistCurve(omega, value.real, value.imag)
+    return NyquistCurve(omega, value.real.copy(), value.imag.copy())
