@@ -112,7 +112,7 @@ class HermiteCurves:
 
     def _cubics(self, flat: Index) -> FloatArray:
         """Coefficients of a + b x + c x^2 + d x^3 for x in [0, 1] in pieces counted through the rows, shape (4, m)."""
-        a, b, a1, b1 = self.pieces.reshape(4, -1)[:, flat]
+        a, b, a1, b1 = self.pieces.reshape(4, -1).take(flat, axis=1)
         chord = a1 - a
         d = b + b1 - 2.0 * chord
         return np.stack([a, b, chord - b - d, d])
@@ -151,7 +151,7 @@ class HermiteCurves:
     def total_variation(self) -> list[float]:
         """Of each row the sum of all ups and downs, turning points between the samples included."""
         flat, _, values = self._turns
-        y0, y1 = self.pieces[::2].reshape(2, -1)[:, flat]
+        y0, y1 = self.pieces[::2].reshape(2, -1).take(flat, axis=1)
         detour = np.abs(values - y0) + np.abs(y1 - values) - np.abs(y1 - y0)
         straight = np.abs(self._chord).sum(axis=1).tolist()
         return [s + float(detour[mine].sum()) for s, mine in zip(straight, self._by_row(flat), strict=True)]
