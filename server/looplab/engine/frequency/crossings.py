@@ -95,7 +95,8 @@ def _largest_beyond(unit: TransferFunction, low: float, high: float) -> float:
 
 
 @lru_cache(maxsize=64)
-def _fastest_root(unit: TransferFunction) -> float:
+def fastest_root(unit: TransferFunction) -> float:
+    """Size of the largest pole or zero [rad/time]; 0 where there is none."""
     return float(np.abs(np.concatenate([unit.zeros, unit.poles])).max(initial=0.0))
 
 
@@ -112,7 +113,7 @@ def _search_range(L: TransferFunction) -> tuple[float, float, bool]:
             overrun = _largest_beyond(L.unit, reach, high) + log(abs(L.gain)) > 0
             # Beyond this |L| < NEGLIGIBLE for good; the dead time would add crossovers without end.
             fade = (abs(L.gain) / NEGLIGIBLE) ** (1.0 / L.relative_degree)
-            high = max(2.0 * _fastest_root(L.unit), fade, 4.0 * pi / L.theta) * 1.1
+            high = max(2.0 * fastest_root(L.unit), fade, 4.0 * pi / L.theta) * 1.1
         else:
             high = max(widest, 40.0 * pi / L.theta)
         high = min(high, reach)

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from looplab.engine.frequency.crossings import OFTEN, crossings
+from looplab.engine.frequency.crossings import OFTEN, crossings, fastest_root
 from looplab.engine.frequency.response import AXIS_GAP
 from looplab.engine.systems.transfer_function import TransferFunction
 
@@ -150,42 +150,52 @@ def nyquist_curve(L: TransferFunction, step: float = 0.03) -> NyquistCurve:
     ----------
     L : TransferFunction
     step : float
-        h [-]; where \|L\| > 50, out of the picture, ten times as much.
+        h [-]; where \|L\| > 50, out of the picture, ten times as much; by the twelfth turn of a dead time four times.
 
     Returns
     -------
     NyquistCurve
-        Points where \|L\| > 1e6 (next to poles on the axis) are left out.
+        Points where \|L\| > 1e6 (next to poles on the axis) are left out. A biproper L with dead time turns without
+        end: its curve ends where it has become its last circle, at 30 times the fastest root.
 
     References
     ----------
     .. [1] K. J. Astrom, R. M. Murray, Feedback Systems, 2nd ed., Princeton 2021, sec. 10.2.
     """
     grid = crossings(L).grid
-    omega, value = grid.omega, grid.value
+    omega, value, phase = grid.omega, grid.value, grid.phase
     size = np.abs(value)
     drawn = size < LARGEST_DRAWN
+    if L.theta and L.relative_degree == 0:
+        drawn &= omega <= max(30.0 * fastest_root(L.unit), 4.0 * np.pi / L.theta)
     if not drawn.all():
-        omega, value, size = omega[drawn], value[drawn], size[drawn]
+        omega, value, phase, size = omega[drawn], value[drawn], phase[drawn], size[drawn]
     if not omega.size:
         return NyquistCurve(omega, value.real.copy(), value.imag.copy())
     near = np.minimum(size[1:], size[:-1])
     length = np.abs(value[1:] - value[:-1]) / (step * np.sqrt((near + SMALLEST_SEEN) * (1.0 + near)))
     length[near > OUT_OF_PICTURE] *= 0.1
+    if L.theta:
+        length /= np.minimum(1.0 + np.abs(phase[1:] - phase[0]) / (8.0 * np.pi), 4.0)
     # A point stays where the length from the start reaches another whole number, and beside a gap to be filled.
     whole = np.floor(np.cumsum(np.minimum(length, 1.0)))
     keep = np.ones(omega.size, dtype=bool)
     keep[1:-1] = (whole[1:] > whole[:-1]) | (length[1:] > 1.0)
+    between = _between(omega, length)
+    if not between.size:
+        omega, value = omega[keep], value[keep]
+    else:
+        omega = np.concatenate([omega[keep], between])
+        order = omega.argsort()
+        omega, value = omega[order], np.concatenate([value[keep], L.response(between)])[order]
+    return NyquistCurve(omega, value.real.copy(), value.imag.copy())
+
+
+def _between(omega: FloatArray, length: FloatArray) -> FloatArray:
+    """Frequencies that cut each interval longer than 1 into parts that are not."""
     gaps = np.flatnonzero(length > 1.0)
     parts = np.minimum(np.ceil(length[gaps]), MOST_PARTS).astype(int)
-    left = np.repeat(gaps, parts - 1)
-    if left.size:
-        part = 1 + np.arange(left.size) - np.repeat(np.cumsum(parts - 1) - (parts - 1), parts - 1)
-        between = omega[left] * (omega[left + 1] / omega[left]) ** (part / np.repeat(parts, parts - 1))
-        omega = np.concatenate([omega[keep], between])
-        value = np.concatenate([value[keep], L.response(between)])
-        order = omega.argsort()
-        omega, value = omega[order], value[order]
-    else:
-        omega, value = omega[keep], value[keep]
-    return NyquistCurve(omega, value.real.copy(), value.imag.copy())
+    extra = parts - 1
+    left = np.repeat(gaps, extra)
+    part = 1 + np.arange(left.size) - np.repeat(np.cumsum(extra) - extra, extra)
+    return np.asarray(omega[left] * (omega[left + 1] / omega[left]) ** (part / np.repeat(parts, extra)))
