@@ -74,13 +74,14 @@ def _dead_time_poles(loop: FeedbackLoop) -> ComplexArray:
 
 @lru_cache(maxsize=64)
 def _simple_real_poles(unit: TransferFunction) -> tuple[ComplexArray, FloatArray]:
-    """Real poles p that are not repeated, and \\|c\\| of 1 + c/(s - p) = 0 next to them for the unit gain."""
-    found = []
-    for p in unit.poles[unit.poles.imag == 0]:
-        others = unit.poles[unit.poles != p]
-        if others.size == unit.order - 1:
-            found.append((p, abs(TransferFunction(unit.zeros, others, unit.gain, unit.theta)(complex(p)))))
-    return np.array([p for p, _ in found], dtype=complex), np.array([c for _, c in found])
+    """Real poles p that are not repeated, and the size of c in 1 + c/(s - p) = 0 next to them for the unit gain."""
+    real = unit.poles[unit.poles.imag == 0]
+    poles = real[[np.count_nonzero(real == p) == 1 for p in real]]
+    with np.errstate(divide="ignore", over="ignore"):
+        to_zeros = np.log(np.abs(poles[:, None] - unit.zeros)).sum(axis=1)
+        apart = np.abs(poles[:, None] - unit.poles)
+        to_others = np.log(np.where(apart == 0.0, 1.0, apart)).sum(axis=1)
+        return poles, np.exp(to_zeros - to_others - unit.theta * poles.real)
 
 
 def _unmoved(L: TransferFunction) -> ComplexArray:
