@@ -47,18 +47,22 @@ class UnitCurve:
 
     @cached_property
     def log_magnitude(self) -> FloatArray:
+        """ln|G|."""
         return _read_only(log_magnitude(self.unit, self.omega))
 
     @cached_property
     def phase(self) -> FloatArray:
+        """Phase [rad]."""
         return _read_only(phase_rad(self.unit, self.omega))
 
     @cached_property
     def value(self) -> ComplexArray:
+        """G(j omega)."""
         return _read_only(self.unit.response(self.omega))
 
     @cached_property
     def rate(self) -> ComplexArray:
+        """omega G'/G at j omega."""
         return _read_only(self.omega * self.unit.log_derivative((1j * self.omega).astype(complex)))
 
 
