@@ -100,4 +100,7 @@ def pair_conjugates(values: npt.ArrayLike, field: str | None = None) -> ComplexA
 
 def from_roots(values: ComplexArray) -> FloatArray:
     """Monic real polynomial with the given conjugate-closed roots, highest power first."""
-    return np.atleast_1d(np.poly(values)).real.astype(float)
+    out = np.ones(1, dtype=complex)
+    for root in values:
+        out = np.convolve(out, (1.0, -root))
+    return out.real.copy()
