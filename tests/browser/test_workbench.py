@@ -32,7 +32,7 @@ def test_a_typed_plant_is_drawn_and_a_wrong_one_says_where(page: Page):
     expect(page.get_by_role("alert").filter(has_text="q")).to_contain_text("column 13")
     expect(text).to_have_attribute("aria-invalid", "true")
     # The mark stands under the 13th character.
-    expect(page.locator(".caret-line")).to_have_text("\u00a0" * 12 + "▲", use_inner_text=False)
+    expect(page.locator("#card-plant .caret-line")).to_have_text("\u00a0" * 12 + "▲", use_inner_text=False)
     expect(page.locator("#panel-step")).to_have_class(re.compile("stale"))
 
     text.fill("1/(s+1)")
