@@ -8,11 +8,14 @@ from looplab import __version__
 from looplab.api import errors, pages
 from looplab.api.limits import BodyLimit
 from looplab.api.routes import (
+    compare,
     frequency,
+    gain_map,
     health,
     labs,
     laplace,
     loop,
+    optimal_tuning,
     response,
     root_locus,
     routh,
@@ -52,7 +55,22 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         redoc_url=None,
     )
     v1 = APIRouter(prefix="/api/v1")
-    for module in (health, loop, frequency, root_locus, tune, laplace, labs, routh, stability, response, state_space):
+    for module in (
+        health,
+        loop,
+        frequency,
+        root_locus,
+        tune,
+        optimal_tuning,
+        compare,
+        gain_map,
+        laplace,
+        labs,
+        routh,
+        stability,
+        response,
+        state_space,
+    ):
         v1.include_router(module.router)
     app.include_router(v1)
     errors.install(app)
