@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any
 
+import numpy as np
 from fastapi import APIRouter, Body
 from pydantic import Field, model_validator
 from starlette.responses import Response
@@ -107,9 +108,8 @@ def _row(entry: Entry, index: int, known: KnownPlant, request: CompareRequest) -
 
 def _curve(response: StepCurve) -> dict[str, Any]:
     return {
-        "t": response.t,
-        "y": response.y,
-        "u": response.u,
+        # Columns of one array: the encoder wants them in one piece.
+        **{name: np.ascontiguousarray(getattr(response, name)) for name in ("t", "y", "u")},
         "truncated_at": response.truncated_at,
         "truncated_reason": response.truncated_reason,
     }

@@ -17,6 +17,7 @@ from looplab.engine.errors import RuleNotApplicable
 from looplab.engine.frequency.crossings import crossings
 from looplab.engine.frequency.response import frequency_grid, frequency_range
 from looplab.engine.systems.transfer_function import TransferFunction
+from looplab.engine.tuning.ultimate_point import stabilising_sign
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -69,10 +70,7 @@ class LoopFamily:
         self.plant, self.scale = plant, time_scale(plant)
         right = int(np.count_nonzero(plant.poles.real > 0))
         self.unstable_poles = right
-        # The constant coefficient of the characteristic polynomial has the sign of the leading one.
-        self.sign = float(np.sign(plant.origin_gain)) * (-1.0) ** np.count_nonzero(
-            (plant.poles.real > 0) & (plant.poles.imag == 0)
-        )
+        self.sign = stabilising_sign(plant)
         low, high = frequency_range(plant)
         omega = frequency_grid(plant, min(low, 1e-3 / self.scale), max(10.0 * high, 1e3 / self.scale))
         P = self.sign * plant.response(omega)

@@ -98,6 +98,8 @@ class _Search:
         low, high = np.append(self.low, SMALLEST_SHARE), np.append(self.high, 1.0)
         if near is None:
             point, cost = self._grid(low, high, COARSE[self.type], criterion, aim)
+            if not np.isfinite(cost):
+                return point, cost
             half = 1.5 * (high - low) / (np.array(COARSE[self.type]) - 1)
         else:
             start = [np.log(getattr(near, n) or np.nan) for n in self.names]

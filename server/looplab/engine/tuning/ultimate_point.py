@@ -76,6 +76,16 @@ def relay_point(amplitude: float, swing: float, Pu: float, hysteresis: float = 0
     return UltimatePoint.of(float(4.0 * amplitude / (np.pi * height)), Pu)
 
 
+def stabilising_sign(plant: TransferFunction) -> float:
+    """Sign that a gain must have to stabilise a plant, 1.0 or -1.0.
+
+    The constant coefficient of the closed loop's polynomial (with integral action) must have the sign of its leading
+    one: each real pole in the right half-plane turns the sign of the plant's gain at low frequency.
+    """
+    right = np.count_nonzero((plant.poles.real > 0) & (plant.poles.imag == 0))
+    return float(np.copysign(1.0, plant.origin_gain) * (-1.0) ** right)
+
+
 def ultimate_point(plant: TransferFunction) -> UltimatePoint:
     r"""The gain at which proportional control loses stability, and the period it then oscillates with.
 
@@ -100,7 +110,7 @@ def ultimate_point(plant: TransferFunction) -> UltimatePoint:
     ----------
     .. [1] J. G. Ziegler, N. B. Nichols, Trans. ASME 64 (1942) 759-768.
     """
-    sign = -1.0 if plant.origin_gain < 0 and nyquist_count(plant * 1e-9).Z == 0 else 1.0
+    sign = stabilising_sign(plant)
     P = plant * sign
     found = crossings(P)
     usable = np.isfinite(found.phase_log_magnitude) & (found.phase_omega > 0)
