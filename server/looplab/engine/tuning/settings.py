@@ -148,8 +148,10 @@ class Rule:
             raise RuleNotApplicable(
                 f"{self.name} has no settings for {type}", field="types", hint=", ".join(self.types)
             )
-        offered = " or ".join(KIND_NAMES[k] for k, by_type in self.formulas.items() if type in by_type)
-        raise RuleNotApplicable(f"its {type} settings are for {offered}, not for {KIND_NAMES[kind]}", field="plant")
+        known = kind in self.formulas
+        offered = " or ".join(KIND_NAMES[k] for k, by_type in self.formulas.items() if type in by_type or not known)
+        what = f"its {type} settings are" if known else "it is"
+        raise RuleNotApplicable(f"{what} made for {offered}, not for {KIND_NAMES[kind]}", field="plant")
 
     def settings(self, data: PlantData, type: str, gains: Gains, note: str | None = None) -> Settings:
         """Settings from what the source's formulas gave, in the ideal form."""
