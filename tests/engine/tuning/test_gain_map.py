@@ -73,7 +73,7 @@ def test_the_spread_tells_its_worst_case() -> None:
     P = FOPDT(1.0, 5.0, 1.0).to_transfer_function()
     C = PID(2.5, 5.0)
     found = sensitivity(P, C, 20.0, 40.0, 200)
-    assert len(found.cases) == 27
+    assert len(found.cases) == 9
     assert found.unstable == ()
     assert found.worst_Ms is not None
     assert found.setpoint is not None
@@ -95,9 +95,9 @@ def test_instability_within_the_spread_is_said() -> None:
     assert found.unstable
     assert any(c.K > 1 and c.theta > 1 for c in found.unstable)
     all_bad = sensitivity(P, PID(60.0, 8.0), 10.0, 10.0, 60)
-    assert len(all_bad.unstable) == 27
+    assert len(all_bad.unstable) == 9
     assert all_bad.worst_Ms is None
     assert all_bad.setpoint is None
-    assert len(sensitivity(parse_transfer_function("1/(s+1)^3"), PID(1.0, 3.0), 10.0, 30.0, 60).cases) == 9
+    assert len(sensitivity(parse_transfer_function("1/(s+1)^3"), PID(1.0, 3.0), 10.0, 30.0, 60).cases) == 5
     with pytest.raises(InvalidInput):
         sensitivity(P, PID(1.0), 0.0, 10.0)

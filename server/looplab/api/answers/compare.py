@@ -102,7 +102,7 @@ class Spread(Answer):
 
 
 class ComparedRow(Answer):
-    """One controller on the plant; null with the reason where its rule does not apply."""
+    """One controller on the plant; null with the reason where its rule refuses or there is no such loop."""
 
     label: str
     rule: str | None

@@ -76,7 +76,7 @@ class CompareRequest(RuleOptions):
     @model_validator(mode="after")
     def _bounded(self) -> CompareRequest:
         if self.spread_pct is not None and len(self.entries) > MOST_WITH_SPREAD:
-            raise ValueError(f"with a spread at most {MOST_WITH_SPREAD} entries: each is simulated on 27 plants")
+            raise ValueError(f"with a spread at most {MOST_WITH_SPREAD} entries: each is simulated on 9 plants")
         return self
 
 
@@ -167,6 +167,15 @@ def _spread(plant: TransferFunction, controller: PID, request: CompareRequest, h
     }
 
 
+def _simulated(true: TransferFunction, controller: PID, request: CompareRequest, horizon: float) -> dict[str, Any]:
+    """A row's loop on the true plant; raises EngineError where the two make no loop that can be computed."""
+    [loop] = compare(true, [controller], horizon, request.points)
+    answer = _judged(loop) | {"controller": controller_answer(controller)}
+    if request.spread_pct is not None:
+        answer["sensitivity"] = _spread(true, controller, request, horizon)
+    return answer
+
+
 EXAMPLES = {
     "rules on their own model": {
         "value": {
@@ -203,8 +212,8 @@ def compare_controllers(request: Annotated[CompareRequest, Body(openapi_examples
     """Margins, metrics and responses of up to 12 controllers on one plant, mismatch and all.
 
     The rules tune on `plant`; the loops are closed around `true_plant`. With `spread_pct` each of up to 4 controllers
-    meets 27 plants (gain, time constants and dead time each less, as is, more): the bands of y, the worst case, and
-    the plants on which the loop is not stable.
+    meets 9 plants (the nominal one, and every corner of gain, time constants and dead time): the bands of y, the worst
+    case, and the plants on which the loop is not stable.
     """
     with located("plant"):
         plant = request.plant.to_engine()
@@ -220,9 +229,9 @@ def compare_controllers(request: Annotated[CompareRequest, Body(openapi_examples
         answer |= dict.fromkeys(("controller", "closed_loop_stable", "margins", "setpoint", "load", "responses"))
         answer["sensitivity"] = None
         if row.controller is not None:
-            [loop] = compare(true, [row.controller], horizon, request.points)
-            answer |= _judged(loop) | {"controller": controller_answer(row.controller)}
-            if request.spread_pct is not None:
-                answer["sensitivity"] = _spread(true, row.controller, request, horizon)
+            try:
+                answer |= _simulated(true, row.controller, request, horizon)
+            except EngineError as error:
+                answer |= {"valid": False, "reason": error.message}
         out.append(answer)
     return json_response({"horizon": horizon, "rows": out}, request.arrays)

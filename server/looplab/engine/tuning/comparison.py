@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from looplab.engine.frequency import Margins, margins
-from looplab.engine.loop import PID, ClosedLoopStep, FeedbackLoop, StepMetrics, closed_loop_step, step_metrics
+from looplab.engine.loop import PID, ClosedLoopStep, FeedbackLoop, Response, StepMetrics, closed_loop_step, step_metrics
 from looplab.engine.loop import default_horizon as _loop_horizon
+from looplab.engine.loop.metrics import NUMBERS
 from looplab.engine.systems.transfer_function import TransferFunction
 
 
@@ -27,7 +28,27 @@ class ComparedLoop:
 
 def plant_horizon(plant: TransferFunction) -> float:
     """A horizon that suits a plant, whatever the controller [time]."""
-    return _loop_horizon(FeedbackLoop(plant, PID(1.0)))
+    return _loop_horizon(FeedbackLoop(plant, PID(0.0)))
+
+
+def judge_step(response: Response, *, setpoint: float, stable: bool) -> StepMetrics:
+    """step_metrics, or none of them where the response of a stable loop leaves what can be computed.
+
+    Parameters
+    ----------
+    response : Response
+    setpoint : float
+        1 for a setpoint step, 0 for a load step [output].
+    stable : bool
+
+    Returns
+    -------
+    StepMetrics
+    """
+    if stable and response.truncated_at is not None:
+        reason = "undefined: y or u leaves +-1e9; choose units in which they are moderate"
+        return StepMetrics(reasons=dict.fromkeys(NUMBERS, reason))
+    return step_metrics(response, setpoint=setpoint, stable=stable)
 
 
 def compare(
@@ -65,8 +86,8 @@ def compare(
             ComparedLoop(
                 controller,
                 found,
-                step_metrics(steps.setpoint, setpoint=1.0, stable=stable),
-                step_metrics(steps.load, setpoint=0.0, stable=stable),
+                judge_step(steps.setpoint, setpoint=1.0, stable=stable),
+                judge_step(steps.load, setpoint=0.0, stable=stable),
                 steps,
             )
         )

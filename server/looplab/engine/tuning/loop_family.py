@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from looplab.engine.errors import RuleNotApplicable
 from looplab.engine.frequency.crossings import crossings
-from looplab.engine.frequency.response import frequency_grid, frequency_range
+from looplab.engine.frequency.response import AXIS_GAP, frequency_grid, frequency_range
 from looplab.engine.systems.transfer_function import TransferFunction
 from looplab.engine.tuning.ultimate_point import stabilising_sign
 
@@ -55,6 +55,13 @@ class LoopFamily:
     plant : TransferFunction
         Proper, dead time exact.
 
+    Raises
+    ------
+    ImproperSystem
+        The plant has more zeros than poles.
+    RuleNotApplicable
+        The plant is zero, or has poles on the imaginary axis beside the origin.
+
     Attributes
     ----------
     scale : float
@@ -67,6 +74,12 @@ class LoopFamily:
         plant.require_proper("plant")
         if plant.gain == 0.0:
             raise RuleNotApplicable("the plant is zero: no controller acts on it", field="plant")
+        on_axis = (plant.poles != 0) & (np.abs(plant.poles.real) <= AXIS_GAP * np.abs(plant.poles))
+        if on_axis.any():
+            raise RuleNotApplicable(
+                "the plant has undamped poles on the imaginary axis: give them the little damping that real ones have",
+                field="plant",
+            )
         self.plant, self.scale = plant, time_scale(plant)
         right = int(np.count_nonzero(plant.poles.real > 0))
         self.unstable_poles = right

@@ -11,8 +11,9 @@ import numpy as np
 
 from looplab.engine.errors import InvalidInput, RuleNotApplicable
 from looplab.engine.frequency import margins
-from looplab.engine.loop import PID, FeedbackLoop, closed_loop_step, step_metrics
+from looplab.engine.loop import PID, FeedbackLoop, closed_loop_step
 from looplab.engine.systems.transfer_function import TransferFunction
+from looplab.engine.tuning.comparison import judge_step
 from looplab.engine.tuning.loop_family import ALPHA, Aim, Criterion, FloatArray, LoopFamily
 from looplab.engine.tuning.settings import TypeName
 
@@ -355,5 +356,7 @@ def _judge(
     if not _offset_remains(family.plant, type, aim):
         steps = closed_loop_step(loop, 2.0 * family.horizon, POINTS)
         response, setpoint = (steps.load, 0.0) if aim == "load" else (steps.setpoint, 1.0)
-        value, reasons = getattr(step_metrics(response, setpoint=setpoint, stable=True), criterion), {}
+        judged = judge_step(response, setpoint=setpoint, stable=True)
+        value = getattr(judged, criterion)
+        reasons = {"value": judged.reasons[criterion]} if value is None else {}
     return OptimalTuning(type, controller, criterion, aim, value, found.Ms, found.Mt, tuple(active), edges, reasons)
