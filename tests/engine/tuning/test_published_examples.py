@@ -61,7 +61,7 @@ def test_amigo(K: float, tau: float, theta: float, PI: tuple[str, ...], PID_: tu
 
 
 def test_seborg_controller_settings_compared() -> None:
-    """D. E. Seborg et al., Process Dynamics and Control, 2nd ed. 2004, Example 12.4: 10 e^{-s}/(2s+1), PI."""
+    """D. E. Seborg et al., Process Dynamics and Control, 2nd ed. 2004, ch. 12, the example 10 e^{-s}/(2s+1), PI."""
     known = KnownPlant.of(parse_transfer_function("10 exp(-s)/(2s+1)"))
     imc = known.tune(RULES["imc"], "PI", Options(tau_c=2 / 3))
     setpoint, load = (known.tune(RULES[name], "PI") for name in ("itae_setpoint", "itae_load"))
@@ -71,7 +71,7 @@ def test_seborg_controller_settings_compared() -> None:
 
 
 def test_seborg_continuous_cycling() -> None:
-    """D. E. Seborg et al., 2nd ed. 2004, Example 12.5: 4 e^{-3.5 s}/(7s+1), Ku = 0.95, Pu = 12."""
+    """D. E. Seborg et al., 2nd ed. 2004, ch. 12, the example 4 e^{-3.5 s}/(7s+1), Ku = 0.95, Pu = 12."""
     point = KnownPlant.of(parse_transfer_function("4 exp(-3.5s)/(7s+1)")).ultimate()
     assert f"{point.Ku:.2f}" == "0.95"
     assert f"{point.Pu:.0f}" == "12"

@@ -82,7 +82,7 @@ def test_tables_of_the_reaction_curve(rule: str, type: str, a: float) -> None:
 def test_tables_of_the_ultimate_cycle(
     rule: str, type: str, gain: float, integral: float | None, derivative: float | None
 ) -> None:
-    """Ziegler and Nichols 1942; Tyreus and Luyben 1992 as in D. E. Seborg et al., 3rd ed. 2011, Table 12.4."""
+    """Ziegler and Nichols 1942; Tyreus and Luyben 1992 as in D. E. Seborg et al., 3rd ed. 2011, ch. 12."""
     for Ku, Pu in ((8.0, 3.6276), (-0.4, 120.0)):
         found = KnownPlant(ultimate=UltimatePoint.of(Ku, Pu)).tune(RULES[rule], type)
         assert found.Kc == pytest.approx(gain * Ku)
