@@ -17,6 +17,7 @@ ROUTES = [
     *("/loop", "/tune", "/frequency", "/margins", "/nyquist", "/root-locus", "/laplace", "/approximate", "/routh"),
     *("/stability", "/response", "/state-space", CHECK, "/labs/validate"),
     *("/plants/cstr/simulate", "/models/simulate", "/models/validate"),
+    *("/tune/optimal", "/tune/trade-off", "/compare", "/gain-map", "/controller-forms"),
 ]
 RAW = {
     "empty": b"",

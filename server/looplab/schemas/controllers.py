@@ -70,6 +70,11 @@ def _tag(value: Any) -> str | None:
     return "pid-parallel" if kind == "pid" and form == "parallel" else kind
 
 
+AnyPID = Annotated[
+    Annotated[StandardPID, Tag("pid")] | Annotated[ParallelPID, Tag("pid-parallel")],
+    Discriminator(_tag, custom_error_type="controller_type", custom_error_message="type must be 'pid'"),
+]
+
 Controller = Annotated[
     Annotated[StandardPID, Tag("pid")]
     | Annotated[ParallelPID, Tag("pid-parallel")]

@@ -28,7 +28,8 @@ def _quadratic_roots(a: float, b: float, c: float) -> ComplexArray:
         im = 0.5 * np.sqrt(-disc)
         return np.array([complex(-0.5 * b, im), complex(-0.5 * b, -im)])
     q = -0.5 * (b + np.copysign(np.sqrt(disc), b))
-    return np.array([q, c / q if q != 0.0 else 0.0], dtype=complex)
+    with np.errstate(invalid="ignore"):
+        return np.array([q, c / q if q != 0.0 else 0.0], dtype=complex)
 
 
 def roots(coefficients: FloatArray) -> ComplexArray:
