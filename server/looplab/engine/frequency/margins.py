@@ -206,8 +206,11 @@ def margins(L: TransferFunction) -> Margins:
     peaks: dict[str, float | None] = (
         dict(_sensitivity_peaks(reduced, found.grid)) if L.gain else dict(Ms=1.0, omega_Ms=0.0, Mt=0.0, omega_Mt=0.0)
     )
-    # Where one is infinite L is -1, and so is the other.
+    # Where one is infinite L is -1, and so is the other; along the real axis the peak may hide between grid points.
     infinite = any(value is not None and not value < 1e8 for value in (peaks["Ms"], peaks["Mt"]))
+    on_minus_one = [c.omega for c in gain_crossovers if abs(c.PM_deg) < 1e-6]
+    if on_minus_one and not infinite:
+        infinite, peaks["omega_Ms"], peaks["omega_Mt"] = True, on_minus_one[0], on_minus_one[0]
     for name in ("Ms", "Mt"):
         if infinite:
             peaks[name] = None
