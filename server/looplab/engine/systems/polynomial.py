@@ -44,6 +44,11 @@ def roots(coefficients: FloatArray) -> ComplexArray:
     -------
     ndarray, shape (n,)
         The roots; roots at the origin are exact.
+
+    Raises
+    ------
+    InvalidInput
+        The coefficients are so far apart that their quotients leave double precision.
     """
     p = trim(np.asarray(coefficients, dtype=float))
     nonzero = np.flatnonzero(p)
@@ -60,8 +65,13 @@ def roots(coefficients: FloatArray) -> ComplexArray:
         found = _quadratic_roots(*p)
     else:
         # Scale s so that the product of the roots is 1: companions of stiff polynomials lose digits otherwise.
-        scale = abs(p[-1] / p[0]) ** (1.0 / (p.size - 1))
-        found = pair_conjugates(np.roots(p * scale ** -np.arange(p.size)) * scale)
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            monic = p / p[0]
+            scale = abs(monic[-1]) ** (1.0 / (p.size - 1))
+            scaled = monic * scale ** -np.arange(p.size)
+        if not np.isfinite(scaled).all():
+            raise InvalidInput("the coefficients are too far apart", hint="choose other units")
+        found = pair_conjugates(np.roots(scaled) * scale)
     return np.concatenate([np.zeros(origin, dtype=complex), found])
 
 
