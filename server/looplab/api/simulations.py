@@ -21,13 +21,14 @@ class SimulationRequest(Model):
     """How long, with which inputs, from where."""
 
     horizon: Annotated[float, Field(ge=1e-9, le=1e9, description="[time]")]
+    start: Annotated[float, Field(ge=0, le=1e9, description="Time at the start: a run goes on where one ended.")] = 0.0
     points: Annotated[int, Field(ge=2, le=5000)] = 500
     operating_point: Annotated[
         str | None, Field(max_length=64, description="Its inputs, parameters and states are the nominal ones.")
     ] = None
     inputs: InputCourses = Field(default={})
     parameters: Annotated[Values, Field(description="Left out: nominal.")] = Field(default={})
-    initial: Annotated[Values, Field(description="States at t = 0; left out: the model's own.")] = Field(default={})
+    initial: Annotated[Values, Field(description="States at the start; left out: the model's own.")] = Field(default={})
     method: Annotated[
         Literal["LSODA", "RK45", "Radau", "BDF"], Field(description="LSODA changes between stiff and not by itself.")
     ] = "LSODA"
@@ -104,7 +105,7 @@ def open_loop_settings(request: SimulationRequest, model: ModelParts) -> OpenLoo
             inputs[name] = course
             continue
         with located(f"inputs.{name[:40]}"):
-            inputs[name] = course.to_engine(nominal.get(name, 0.0), request.horizon)
+            inputs[name] = course.to_engine(nominal.get(name, 0.0), request.start + request.horizon)
     return OpenLoopSettings(
         request.horizon,
         request.points,
@@ -112,6 +113,7 @@ def open_loop_settings(request: SimulationRequest, model: ModelParts) -> OpenLoo
         {**(point.parameters if point else {}), **request.parameters},
         {**(point.near if point else {}), **request.initial},
         request.method,
+        request.start,
     )
 
 

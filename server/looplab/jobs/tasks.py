@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import orjson
@@ -15,6 +15,9 @@ from looplab.engine.errors import EngineError, NonFinite, ParseError
 from looplab.engine.nonlinear import CompiledModel, compile_model, latex_equations
 from looplab.engine.nonlinear.inputs import InputCourse
 from looplab.plants import load_plant
+
+if TYPE_CHECKING:
+    from looplab.engine.nonlinear.simulation import Simulation
 
 # A plant's id, or the JSON text of a document.
 PLANT, DOCUMENT = "plant", "document"
@@ -47,6 +50,7 @@ class OpenLoopSettings:
     parameters: Mapping[str, float]
     initial: Mapping[str, float]
     method: str
+    start: float = 0.0
 
 
 @lru_cache(maxsize=32)
@@ -80,7 +84,7 @@ def simulate(source: ModelSource, settings: OpenLoopSettings) -> dict[str, Any]:
     with _located(source, NonFinite):
         found = simulate_open_loop(
             model,
-            np.linspace(0.0, settings.horizon, settings.points),
+            np.linspace(settings.start, settings.start + settings.horizon, settings.points),
             settings.inputs,
             settings.parameters,
             settings.initial,
@@ -96,6 +100,7 @@ def simulate(source: ModelSource, settings: OpenLoopSettings) -> dict[str, Any]:
         "t": found.t,
         "states": by_name(model.state_names, found.x),
         "outputs": by_name(model.output_names, found.y),
+        "variables": by_name(model.variable_names, _variables(model, settings.parameters, found)),
         "inputs": by_name(model.input_names, found.u),
         "events": [
             {
@@ -110,6 +115,21 @@ def simulate(source: ModelSource, settings: OpenLoopSettings) -> dict[str, Any]:
         "truncated_reason": found.truncated_reason,
         "calls": found.calls,
     }
+
+
+def _variables(model: CompiledModel, parameters: Mapping[str, float], found: Simulation) -> np.ndarray:
+    """The variables along a run, shape (count, variables); nan where one has no finite value."""
+    p = model.parameters(parameters)
+    none = (float("nan"),) * len(model.variable_names)
+
+    def at(t: float, x: list[float], u: list[float]) -> tuple[float, ...]:
+        try:
+            return model.variables(t, x, u, p)
+        except NonFinite:
+            return none
+
+    rows = [at(*point) for point in zip(found.t.tolist(), found.x.tolist(), found.u.tolist(), strict=True)]
+    return np.array(rows, dtype=float).reshape(len(rows), len(model.variable_names))
 
 
 def validate(text: bytes) -> dict[str, Any]:

@@ -17,12 +17,15 @@ class PlantSummary(Answer):
     id: str
     title: str
     summary: str
+    group: Annotated[str, Field(description="The shelf of the library.")]
     notes: Annotated[str, Field(description="Sections of the lecture notes.")]
     time_unit: str
     inputs: list[str]
     states: list[str]
     outputs: list[str]
     operating_points: list[str]
+    drawing: Annotated[dict[str, Any] | None, Field(description="What draws the plant, see the schema of drawings.")]
+    values: Annotated[dict[str, float], Field(description="Every signal at the plant's initial state.")]
 
 
 class PlantList(Answer):
@@ -44,6 +47,13 @@ class PlantAnswer(Answer):
 
     document: dict[str, Any]
     equations: list[EquationAnswer]
+    group: Annotated[str, Field(description="The shelf of the library.")]
+    drawing: Annotated[dict[str, Any] | None, Field(description="What draws the plant, see the schema of drawings.")]
+    values: Annotated[dict[str, float], Field(description="Every signal at the plant's initial state.")]
+    time_scale: Annotated[
+        float | None,
+        Field(description="Slowest time constant about the initial state [time]; null where there is none."),
+    ]
 
 
 class ModelProblem(Answer):
@@ -80,6 +90,7 @@ class SimulationAnswer(Answer):
     t: Numbers
     states: ByName
     outputs: ByName
+    variables: Annotated[dict[str, Any], Field(description="One curve for each; null where it has no finite value.")]
     inputs: Annotated[dict[str, Numbers], Field(description="The new value at a jump.")]
     events: list[EventAnswer]
     truncated_at: float | None
