@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -27,6 +28,17 @@ from looplab.engine.systems.polynomial import FloatArray
 # How closely the end is approached where the equations cannot be computed any further, as part of the time so far.
 _EDGE = 1e-9
 _APPROACHES = 300
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A place of a simulation to which it can go back."""
+
+    t: float
+    x: FloatArray
+    on: list[bool]
+    events: int
+    samples: int
 
 
 class Run:
@@ -87,6 +99,15 @@ class Run:
                 self.advance(inside, finish, wanted)
             if self.cut is not None:
                 return
+
+    def mark(self) -> Mark:
+        """Where it is."""
+        return Mark(self.t, self.x, self.on, len(self.events), len(self.samples))
+
+    def back(self, mark: Mark) -> None:
+        """Go back to where it was."""
+        self.t, self.x, self.on = mark.t, mark.x, mark.on
+        del self.events[mark.events :], self.samples[mark.samples :]
 
     @contextmanager
     def budgeted(self) -> Iterator[None]:
