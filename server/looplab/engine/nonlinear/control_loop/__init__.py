@@ -1,8 +1,8 @@
-"""Control loops on nonlinear models: continuous and sampled PID, saturation, dead time, manual and auto."""
+"""Control loops on nonlinear models: continuous and sampled PID, saturation, dead time, manual and auto.
 
-from looplab.engine.nonlinear.control_loop.metrics import LoopMetrics
-from looplab.engine.nonlinear.control_loop.result import ControlledSimulation, LoopSignals
-from looplab.engine.nonlinear.control_loop.sampled_pid import SampledPID
+They are simulated by ``control_loop.simulation``, which needs scipy's solvers and is imported where it is used.
+"""
+
 from looplab.engine.nonlinear.control_loop.settings import (
     ControlLoop,
     Instrument,
@@ -10,17 +10,5 @@ from looplab.engine.nonlinear.control_loop.settings import (
     MeasurementNoise,
     ModeChange,
 )
-from looplab.engine.nonlinear.control_loop.simulate import simulate_control
 
-__all__ = [
-    "ControlLoop",
-    "ControlledSimulation",
-    "Instrument",
-    "Lag",
-    "LoopMetrics",
-    "LoopSignals",
-    "MeasurementNoise",
-    "ModeChange",
-    "SampledPID",
-    "simulate_control",
-]
+__all__ = ["ControlLoop", "Instrument", "Lag", "MeasurementNoise", "ModeChange"]

@@ -10,7 +10,7 @@ import numpy as np
 
 from looplab.engine.errors import InvalidInput
 from looplab.engine.nonlinear.control_loop.settings import ControlLoop
-from looplab.engine.nonlinear.inputs import InputCourse
+from looplab.engine.nonlinear.inputs import SAME_TIME, InputCourse
 from looplab.engine.nonlinear.simulation.grid import breakpoints, looks, merged, snapped
 from looplab.engine.systems.polynomial import FloatArray
 
@@ -59,6 +59,13 @@ def sample_times(loop: ControlLoop, start: float, end: float) -> FloatArray:
     return start + h * np.arange(int((end - start) / h * (1.0 + 1e-12)) + 1)
 
 
+def measuring_times(loop: ControlLoop, samples: FloatArray) -> FloatArray:
+    """When the sensor is read for each sample; before the start for the first ones, where it has a dead time."""
+    times = samples - loop.sensor.theta
+    start, end = samples[0], samples[-1]
+    return np.where(np.abs(times - start) <= SAME_TIME * (end - start), start, times)
+
+
 def make_agenda(times: FloatArray, loops: Sequence[ControlLoop], courses: Sequence[InputCourse]) -> Agenda:
     """The agenda of a simulation.
 
@@ -78,7 +85,7 @@ def make_agenda(times: FloatArray, loops: Sequence[ControlLoop], courses: Sequen
             jumps.append(changes)
             continue
         samples = sample_times(loop, start, end)
-        before = samples - loop.sensor.theta
+        before = measuring_times(loop, samples)
         later = samples + loop.valve.theta
         wanted += [
             (Deed.MEASURE, index, before[before >= start]),
@@ -103,37 +110,38 @@ def make_agenda(times: FloatArray, loops: Sequence[ControlLoop], courses: Sequen
     return Agenda(stops, edges.tolist(), deeds)
 
 
-def _delays(loops: Sequence[ControlLoop]) -> list[float]:
-    """Dead times of continuous loops, which need the past."""
+def _delays(loops: Sequence[ControlLoop]) -> list[tuple[float, str]]:
+    """Dead times of continuous loops, which need the past, and their places."""
     return [
-        theta
-        for loop in loops
+        (part.theta, f"loops[{index}].{name}.theta")
+        for index, loop in enumerate(loops)
         if loop.sampling_time is None
-        for theta in (loop.sensor.theta, loop.valve.theta)
-        if theta > 0
+        for name, part in (("sensor", loop.sensor), ("valve", loop.valve))
+        if part.theta > 0
     ]
 
 
 def shortest_delay(loops: Sequence[ControlLoop]) -> float:
     """Of continuous loops; infinite where there is none [time]."""
-    return min(_delays(loops), default=np.inf)
+    return min((theta for theta, _ in _delays(loops)), default=np.inf)
 
 
-def _steps(jumps: FloatArray, delays: list[float], start: float, end: float) -> list[float]:
+def _steps(jumps: FloatArray, delays: list[tuple[float, str]], start: float, end: float) -> list[float]:
     """The method of steps: no step is longer than half of a dead time, and jumps come back after each of them."""
     if not delays:
         return []
-    step = 0.5 * min(delays)
+    shortest, place = min(delays)
+    step = 0.5 * shortest
     if (end - start) / step > MAX_EDGES:
         raise InvalidInput(
             "the dead time is too short for this horizon",
-            field="theta",
+            field=place,
             hint=f"{2 * (end - start) / MAX_EDGES:.3g} or longer, or a sampled controller",
         )
     echoes = np.unique(np.append(jumps, start))
     newest = echoes
     for _ in range(_ROUNDS):
-        newest = np.unique(np.concatenate([newest + theta for theta in delays]))
+        newest = np.unique(np.concatenate([newest + theta for theta, _ in delays]))
         newest = newest[newest < end]
         echoes = np.unique(np.append(echoes, newest))
         if echoes.size > MAX_EDGES:

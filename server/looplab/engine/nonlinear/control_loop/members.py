@@ -8,17 +8,18 @@ from typing import Protocol
 
 import numpy as np
 
-from looplab.engine.nonlinear.control_loop.agenda import sample_times
+from looplab.engine.nonlinear.control_loop.agenda import measuring_times, sample_times
 from looplab.engine.nonlinear.control_loop.history import History
 from looplab.engine.nonlinear.control_loop.loop_model import LoopNames
 from looplab.engine.nonlinear.control_loop.sampled_pid import Range, SampledPID
-from looplab.engine.nonlinear.control_loop.settings import ControlLoop
-from looplab.engine.nonlinear.control_loop.start import LoopStart
+from looplab.engine.nonlinear.control_loop.settings import ControlLoop, MeasurementNoise
+from looplab.engine.nonlinear.control_loop.start import LoopStart, within
 from looplab.engine.nonlinear.inputs import InputCourse, noise
 from looplab.engine.nonlinear.language import Values
 from looplab.engine.nonlinear.model import CompiledModel
 from looplab.engine.nonlinear.simulation.right_hand_side import Course, RightHandSide, RunsAway
 from looplab.engine.nonlinear.simulation.watch import LARGEST_STATE
+from looplab.engine.response import InputSignal
 from looplab.engine.systems.polynomial import FloatArray
 
 
@@ -76,7 +77,7 @@ class SampledMember:
         self.setpoints = deque(loop.setpoint.values(samples).tolist())
         self.noise = deque(_noise(loop, samples).tolist())
         # Samples that would look before the start see what was there then.
-        early = int(np.count_nonzero(samples - loop.sensor.theta < t[0]))
+        early = int(np.count_nonzero(measuring_times(loop, samples) < t[0]))
         self.measured = deque([start.y] * early)
         self.sent: deque[float] = deque()
         self.changes = deque(change for change in loop.modes if change.t >= t[0])
@@ -117,8 +118,12 @@ def _noise(loop: ControlLoop, samples: FloatArray) -> FloatArray:
     if loop.noise.interval is None:
         return loop.noise.std * np.random.default_rng(loop.noise.seed).standard_normal(samples.size)
     end = float(samples[-1]) + loop.noise.interval
-    signal = noise(loop.noise.std, loop.noise.interval, end, loop.noise.seed, max(float(samples[0]), 0.0))
-    return signal.value(samples)
+    return _held_noise(loop.noise, loop.noise.interval, float(samples[0]), end).value(samples)
+
+
+def _held_noise(of: MeasurementNoise, interval: float, start: float, end: float) -> InputSignal:
+    with within("noise"):
+        return noise(of.std, interval, end, of.seed, max(start, 0.0))
 
 
 class ContinuousMember:
@@ -131,8 +136,7 @@ class ContinuousMember:
         self.auto, self.manual = Held(1.0), Held(start.u)
         part = InputCourse(0.0)
         if loop.noise is not None and loop.noise.interval is not None:
-            begin = max(float(t[0]), 0.0)
-            part = part.plus(noise(loop.noise.std, loop.noise.interval, float(t[-1]), loop.noise.seed, begin))
+            part = part.plus(_held_noise(loop.noise, loop.noise.interval, float(t[0]), float(t[-1])))
         self.courses: dict[str, Course] = {
             names("r"): loop.setpoint,
             names("noise"): part,

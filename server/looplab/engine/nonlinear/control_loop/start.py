@@ -70,12 +70,12 @@ class Start:
 
 
 @contextmanager
-def in_loop(index: int) -> Iterator[None]:
-    """Give an error the place of the loop it is in."""
+def within(place: str) -> Iterator[None]:
+    """Give an error the place of what it is in."""
     try:
         yield
     except EngineError as error:
-        error.field = f"loops[{index}].{error.field}" if error.field else f"loops[{index}]"
+        error.field = f"{place}.{error.field}" if error.field else place
         raise
 
 
@@ -102,7 +102,7 @@ def prepare(
     limits = []
     for index, loop in enumerate(loops):
         level = given.pop(loop.input, None)
-        with in_loop(index):
+        with within(f"loops[{index}]"):
             if isinstance(level, InputCourse):
                 raise InvalidInput(f"{loop.input} is moved by this loop: it has no course of its own", field="input")
             bias = loop.bias if loop.bias is not None else level
@@ -156,7 +156,7 @@ def _check_names(model: CompiledModel, loops: Sequence[ControlLoop]) -> None:
         raise InvalidInput(f"there must be 1 to {MAX_LOOPS} loops", field="loops")
     moved: dict[str, int] = {}
     for index, loop in enumerate(loops):
-        with in_loop(index):
+        with within(f"loops[{index}]"):
             if loop.output not in model.output_names:
                 raise InvalidInput(
                     f"the model has no output {loop.output[:40]!a}",

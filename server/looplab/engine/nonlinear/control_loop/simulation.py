@@ -16,7 +16,7 @@ from looplab.engine.nonlinear.control_loop.members import ContinuousMember, Memb
 from looplab.engine.nonlinear.control_loop.metrics import loop_metrics
 from looplab.engine.nonlinear.control_loop.result import ControlledSimulation, LoopSignals
 from looplab.engine.nonlinear.control_loop.settings import ControlLoop
-from looplab.engine.nonlinear.control_loop.start import Start, in_loop, prepare
+from looplab.engine.nonlinear.control_loop.start import Start, prepare, within
 from looplab.engine.nonlinear.language import Values
 from looplab.engine.nonlinear.model import CompiledModel
 from looplab.engine.nonlinear.simulation.arguments import Courses, call_budget, tolerances
@@ -109,7 +109,7 @@ class _Work:
         self.members: list[Member] = []
         for index, (loop, at, names) in enumerate(zip(loops, start.loops, start.closed.names, strict=True)):
             kind = ContinuousMember if loop.sampling_time is None else SampledMember
-            with in_loop(index):
+            with within(f"loops[{index}]"):
                 self.members.append(kind(loop, at, names, self.model, t))
             courses |= self.members[-1].courses
         self.agenda = make_agenda(
