@@ -56,7 +56,7 @@ def sample_times(loop: ControlLoop, start: float, end: float) -> FloatArray:
             field="sampling_time",
             hint=f"{(end - start) / MAX_EDGES:.3g} or longer, or a shorter horizon",
         )
-    return start + h * np.arange(int((end - start) / h * (1.0 + 1e-12)) + 1)
+    return np.asarray(start + h * np.arange(int((end - start) / h * (1.0 + 1e-12)) + 1))
 
 
 def measuring_times(loop: ControlLoop, samples: FloatArray) -> FloatArray:

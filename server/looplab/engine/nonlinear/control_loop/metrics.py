@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +14,6 @@ from looplab.engine.nonlinear.inputs import InputCourse
 from looplab.engine.systems.polynomial import FloatArray
 
 _STEP_NUMBERS = ("overshoot_pct", "t_rise", "t_settle", "decay_ratio")
-_NUMBERS = ("IAE", "ISE", "ITAE", *_STEP_NUMBERS)
 # The output has arrived where it ends this near to the setpoint, as part of the step.
 _ARRIVED = 0.02
 
@@ -65,20 +65,17 @@ def loop_metrics(
     -------
     LoopMetrics
     """
-    common = (float(np.abs(np.diff(u)).sum()), 100.0 * float(np.mean(saturated)))
+    out: dict[str, Any] = {"TV": float(np.abs(np.diff(u)).sum()), "saturated_pct": 100.0 * float(np.mean(saturated))}
     if t.size < 3:
-        why = "undefined: there are fewer than three samples"
-        return LoopMetrics(
-            None, None, None, *common, reasons=dict.fromkeys(("IAE", "ISE", "ITAE", *_STEP_NUMBERS), why)
-        )
+        why = dict.fromkeys(("IAE", "ISE", "ITAE", *_STEP_NUMBERS), "undefined: there are fewer than three samples")
+        return LoopMetrics(None, None, None, **out, reasons=why)
     e = setpoint.values(t) - y
     integrals = HermiteCurve(t - t[0], e, np.gradient(e, t)).absolute_integrals(0.0)
     if cut:
-        why = dict.fromkeys(_STEP_NUMBERS, "undefined: the simulation was cut")
-        return LoopMetrics(*integrals, *common, reasons=why)
-    found, why = _step(t, y, u, setpoint)
-    numbers = {name: getattr(found, name) if found else None for name in _STEP_NUMBERS}
-    return LoopMetrics(*integrals, *common, **numbers, reasons=why)
+        return LoopMetrics(*integrals, **out, reasons=dict.fromkeys(_STEP_NUMBERS, "undefined: the simulation was cut"))
+    found, reasons = _step(t, y, u, setpoint)
+    out |= {name: getattr(found, name) for name in _STEP_NUMBERS if found}
+    return LoopMetrics(*integrals, **out, reasons=reasons)
 
 
 def _step(
