@@ -9,10 +9,11 @@ from fastapi import Depends, Request
 from pydantic import Field
 
 from looplab.engine.errors import InvalidInput
+from looplab.engine.nonlinear.control_loop import ControlLoop
 from looplab.engine.nonlinear.inputs import InputCourse
 from looplab.jobs import WorkerPool
 from looplab.jobs.tasks import OpenLoopSettings
-from looplab.schemas import InputCourses, Model, located
+from looplab.schemas import ControlLoopShape, InputCourses, Model, located
 
 Values = Annotated[dict[str, float], Field(max_length=200)]
 
@@ -33,6 +34,12 @@ class SimulationRequest(Model):
         Literal["LSODA", "RK45", "Radau", "BDF"], Field(description="LSODA changes between stiff and not by itself.")
     ] = "LSODA"
     arrays: Literal["list", "f4"] = "list"
+
+
+class ControlRequest(SimulationRequest):
+    """A simulation with controllers; the course of an input that one of them moves is its bias, a number."""
+
+    loops: Annotated[list[ControlLoopShape], Field(min_length=1, max_length=3)]
 
 
 class Named(Protocol):
@@ -115,6 +122,15 @@ def open_loop_settings(request: SimulationRequest, model: ModelParts) -> OpenLoo
         request.method,
         request.start,
     )
+
+
+def control_loops(request: ControlRequest) -> list[ControlLoop]:
+    """The loops of a request as a worker takes them; raises EngineError naming the field."""
+    out = []
+    for index, loop in enumerate(request.loops):
+        with located(f"loops[{index}]"):
+            out.append(loop.to_engine(request.horizon))
+    return out
 
 
 def _operating_point(name: str | None, points: Sequence[Point]) -> Point | None:

@@ -1,6 +1,7 @@
 """The JSON shapes of systems, controllers and loops, shared by the API and the labs, and their way to the engine."""
 
 from looplab.schemas.base import Model, json_path, located
+from looplab.schemas.control_loops import ControlLoopShape
 from looplab.schemas.controllers import AnyPID, Controller, ParallelPID, StandardPID
 from looplab.schemas.courses import Course, InputCourses
 from looplab.schemas.inputs import InputShape
@@ -18,6 +19,7 @@ from looplab.schemas.systems import (
 
 __all__ = [
     "AnyPID",
+    "ControlLoopShape",
     "Controller",
     "Course",
     "ExpressionSystem",
