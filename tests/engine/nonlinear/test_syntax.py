@@ -184,7 +184,7 @@ def test_the_printer_writes_no_needless_brackets(text, again):
 @pytest.mark.parametrize(
     ("text", "latex"),
     [
-        ("k0*exp(-E/(R*T))", r"k_{0} \, e^{-\frac{E}{R \, T}}"),
+        ("k0*exp(-E/(R*T))", r"k_{0} \, \exp\left(-\frac{E}{R \, T}\right)"),
         ("beta*sqrt(h)", r"\beta \, \sqrt{h}"),
         ("(a + b)^2", r"\left(a + b\right)^{2}"),
         ("2*3", r"2 \cdot 3"),

@@ -117,7 +117,8 @@ def _latex_base(node: Node, symbols: Mapping[str, str]) -> str:
 def _latex_call(node: Node, symbols: Mapping[str, str]) -> str:
     written = [_latex(arg, symbols) for arg in node.args]
     if node.name == "exp":
-        return f"e^{{{written[0]}}}"
+        # A fraction in an exponent is too small to read.
+        return rf"\exp\left({written[0]}\right)" if r"\frac" in written[0] else f"e^{{{written[0]}}}"
     if node.name == "sqrt":
         return rf"\sqrt{{{written[0]}}}"
     if node.name == "abs":
