@@ -4,6 +4,8 @@
 HOST = 127.0.0.1
 PORT = 8000
 PYTEST_ARGS ?=
+# A file of tests stays on one worker; PYTEST_WORKERS=0 runs all of them in one process.
+PYTEST_WORKERS ?= auto
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -13,6 +15,8 @@ PYTHON ?= $(shell for p in python3.13 python3.12 python3.11 python3; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && { echo $$p; break; }; done)
 
 export PIP_DISABLE_PIP_VERSION_CHECK = 1
+# One test process a core is enough.
+export OPENBLAS_NUM_THREADS = 1
 
 .PHONY: help run test fix lock clean need-node need-chromium lint types imports js pytest
 .DEFAULT_GOAL := help
@@ -85,7 +89,7 @@ js: need-node node_modules/.stamp-dev
 	node_modules/.bin/oxlint web
 
 pytest: $(VENV)/.stamp-dev node_modules/.stamp-dev
-	$(BIN)/python -m pytest $(PYTEST_ARGS)
+	$(BIN)/python -m pytest --numprocesses $(PYTEST_WORKERS) --maxprocesses 4 --dist loadfile $(PYTEST_ARGS)
 
 # --- upkeep --------------------------------------------------------------------------------------------
 
