@@ -52,8 +52,8 @@ def _accuracy(rows: list[dict[str, Any]]) -> Table:
 def _control(rows: list[dict[str, Any]]) -> Table:
     caption = (
         "Processor time: medians in ms and their ratio; apart: the largest difference of y. Sampled loops against "
-        "scipy by a hand-written right-hand side and solve_ivp for each sample; the others by input_output_response. On "
-        f"nonlinear plants all solve to a relative tolerance of {RTOL:g}."
+        "scipy by a hand-written right-hand side and solve_ivp for each sample; the others by input_output_response. "
+        f"On nonlinear plants all solve to a relative tolerance of {RTOL:g}."
     )
     table = _table("Loops that saturate", ("", "against"), ("looplab", "peer", "ratio", "goal", "apart"), caption)
     plant = None
