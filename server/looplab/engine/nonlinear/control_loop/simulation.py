@@ -63,7 +63,7 @@ def simulate_control(
         One to three, each with an input of its own.
     inputs : mapping of str to float or InputCourse, or None
         Inputs that are not nominal; of one that a loop moves, a number: its bias.
-    parameters, initial, method, rtol, atol, budget
+    parameters, initial, method, rtol, atol, budget :
         As in ``simulate_open_loop``.
 
     Returns

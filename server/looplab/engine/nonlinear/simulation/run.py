@@ -84,6 +84,7 @@ class Run:
         self.cut: str | None = None
         self.approaches = 0
         self.max_step = np.inf
+        self.used: Solver | None = None
 
     def start(self, t: float, x: FloatArray) -> None:
         """Put it at its start."""
@@ -140,7 +141,8 @@ class Run:
         for stop in stops:
             before = self.t
             try:
-                solver = solver or self._solver(finish, max_step)
+                if solver is None:
+                    solver = self.used = self._solver(finish, max_step, self.used)
                 x = solver.advance(stop)
                 self._look(stop, x, self.watch.on(self.watch.measure(stop, x)))
             except (NonFinite, RunsAway, SolverFailed) as error:
@@ -153,9 +155,9 @@ class Run:
             if stop in wanted:
                 self.samples.append((stop, self.x))
 
-    def _solver(self, finish: float, max_step: float) -> Solver:
+    def _solver(self, finish: float, max_step: float, used: Solver | None = None) -> Solver:
         problem = Problem(self.rhs.f, self.rhs.jacobian, self.t, self.x, finish, max_step)
-        return make_solver(self.method, problem, self.tolerances)
+        return make_solver(self.method, problem, self.tolerances, used)
 
     def _look(self, stop: float, x: FloatArray, on: list[bool]) -> None:
         """Go on to a state; events between here and there happen first."""
