@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from looplab.engine.nonlinear.simulation import simulate_open_loop
-from plants import plant
+from looplab.plants import load_plant
 
-CAR, BODY = plant("cruise-control"), plant("body-temperature")
+CAR, BODY = load_plant("cruise-control"), load_plant("body-temperature")
 
 
 def body(inputs, hours=20.0, **more):

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from looplab.engine.nonlinear.simulation import simulate_open_loop
-from plants import plant
+from looplab.plants import load_plant
 
-PENDULUM = plant("cart-pendulum")
+PENDULUM = load_plant("cart-pendulum")
 M, m, MU, L, J, GAMMA, G = 0.5, 0.2, 0.1, 0.3, 0.006, 0.01, 9.8
 
 

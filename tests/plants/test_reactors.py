@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from looplab.engine.nonlinear.simulation import simulate_open_loop
-from plants import plant
+from looplab.plants import load_plant
 
-VARIABLE, JACKETED = plant("cstr-variable-volume"), plant("jacketed-cstr")
+VARIABLE, JACKETED = load_plant("cstr-variable-volume"), load_plant("jacketed-cstr")
 
 
 def steady(balance, low, high):

@@ -4,30 +4,16 @@ Each right-hand side is f(x, u, p) with inputs and parameters by name. It takes 
 gives its derivatives to rounding: d/dx Re f(x) = Im f(x + ih)/h.
 """
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from looplab.engine.nonlinear import BUILT_IN, CompiledModel, compile_model
-from looplab.plants.tanks_in_series import tanks_in_series
+from looplab.engine.nonlinear import CompiledModel
 
-FOLDER = Path(__file__).resolve().parents[2] / "server" / "looplab" / "plants"
 Values = Mapping[str, Any]
-
-
-def document(plant_id: str) -> dict[str, Any]:
-    if plant_id == "tanks-in-series":
-        return tanks_in_series()
-    return json.loads((FOLDER / "models" / f"{plant_id}.json").read_text(encoding="utf-8"))
-
-
-def plant(plant_id: str) -> CompiledModel:
-    return compile_model(document(plant_id), BUILT_IN)
 
 
 def _above(value: Any) -> Any:
@@ -61,6 +47,11 @@ def thermometer_glass(x, u, p):
     ]
 
 
+def cstr(x, u, p):
+    """As much flows out as in."""
+    return cstr_variable_volume([p["V"], *x], {**u, "F": u["Fi"]}, p)[1:]
+
+
 def cstr_variable_volume(x, u, p):
     """From the amounts n_A = cA V and the heat V T: the product rule gives what the document states."""
     V, cA, T = x
@@ -89,6 +80,10 @@ def cart_pendulum(x, u, p):
     force = u["F"] - p["mu"] * v + ml * np.sin(phi) * omega * omega
     torque = ml * p["g"] * np.sin(phi) - p["gamma"] * omega
     return [v, (d * force - b * torque) / (a * d - b * b), omega, (a * torque - b * force) / (a * d - b * b)]
+
+
+def gravity_drained_tank(x, u, p):
+    return [u["Fi"] / p["A"] - p["beta"] / p["A"] * x[0] ** 0.5]
 
 
 def two_tanks(x, u, p):
@@ -168,9 +163,11 @@ RUNS = {
     "heated-room": Run(heated_room, 12, 6, {"n": 10, "T_amb": -5}),
     "thermometer": Run(thermometer, 40, 20, {"T_f": 10}, inputs={"T_f": 100}),
     "thermometer-glass": Run(thermometer_glass, 40, 20, {"T_f": 10}, inputs={"T_f": 100}),
+    "cstr": Run(cstr, 10, 3, {"Ti": 360, "cAi": 1.1}, {"Q": 1.9e6}),
     "cstr-variable-volume": Run(cstr_variable_volume, 10, 3, {"F": 102, "Ti": 360, "cAi": 1.1}, {"F": 99}),
     "jacketed-cstr": Run(jacketed_cstr, 6, 1, {"Tc": 305, "F": 105}),
     "cart-pendulum": Run(cart_pendulum, 5, 0.5, {"F": 0.5}, parameters={"x_end": 100}),
+    "gravity-drained-tank": Run(gravity_drained_tank, 20, 8, {"Fi": 0.3}, {"Fi": 0.6}),
     "two-tanks": Run(two_tanks, 10, 4, {"Fi": 1.5}, {"Fi": 0.7}),
     "two-tanks-interacting": Run(two_tanks_interacting, 10, 4, {"Fi": 1.2}, {"Fi": 0.7}, {"h1": 0.2, "h2": 1.6}),
     "tanks-in-series": Run(five_tanks, 12, 6, {"F": 0.5, "c_0": 0.2}, {"F": 1.5}, {"c_1": 0.9, "c_4": 0.1}),
