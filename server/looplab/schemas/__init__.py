@@ -1,6 +1,7 @@
 """The JSON shapes of systems, controllers and loops, shared by the API and the labs, and their way to the engine."""
 
 from looplab.schemas.base import Model, json_path, located
+from looplab.schemas.control_loops import ControlLoopShape
 from looplab.schemas.controllers import Controller, ParallelPID, StandardPID
 from looplab.schemas.courses import Course, InputCourses
 from looplab.schemas.inputs import InputShape
@@ -17,6 +18,7 @@ from looplab.schemas.systems import (
 )
 
 __all__ = [
+    "ControlLoopShape",
     "Controller",
     "Course",
     "ExpressionSystem",

@@ -8,14 +8,14 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Body, Path
 from starlette.responses import Response
 
-from looplab.api.answers.nonlinear import PlantAnswer, PlantList, SimulationAnswer
+from looplab.api.answers.nonlinear import ControlAnswer, PlantAnswer, PlantList, SimulationAnswer
 from looplab.api.docs import BUSY, ERRORS
 from looplab.api.encode import json_response
 from looplab.api.errors import ApiError
-from looplab.api.simulations import SimulationRequest, Workers, open_loop_settings
+from looplab.api.simulations import ControlRequest, RunRequest, Workers, control_loops, open_loop_settings
 from looplab.api.strict import StrictRoute
 from looplab.engine.nonlinear import CompiledModel, latex_equations, slowest_time_constant
-from looplab.jobs.tasks import PLANT, ModelSource, simulate
+from looplab.jobs.tasks import PLANT, ModelSource, control, simulate
 from looplab.labs.text import render_math
 from looplab.plants import UnknownPlant, group_of, load_plant, plant_document, plant_drawing, plant_ids, shelved
 
@@ -26,6 +26,44 @@ NOT_FOUND: dict[int | str, dict[str, Any]] = {404: {**ERRORS[422], "description"
 EXAMPLES: dict[str, Any] = {
     "as it is": {"value": {"horizon": 20, "points": 101}},
     "with another solver": {"value": {"horizon": 5, "points": 51, "method": "BDF"}},
+}
+CONTROL_EXAMPLES: dict[str, Any] = {
+    "the reactor held where it is unstable": {
+        "value": {
+            "horizon": 8,
+            "points": 161,
+            "operating_point": "middle",
+            "loops": [
+                {
+                    "output": "T",
+                    "input": "Q",
+                    "setpoint": {"level": 385.1107, "add": [{"type": "step", "amplitude": 5, "start": 1}]},
+                    "controller": {"type": "pid", "Kc": 1e6, "tau_I": 0.5, "action": "direct"},
+                    "anti_windup": "back_calculation",
+                    "sensor": {"lag": {"tau": 0.05}},
+                }
+            ],
+        }
+    },
+    "with a sampled controller, noise and a dead time, first in manual": {
+        "value": {
+            "horizon": 8,
+            "points": 161,
+            "operating_point": "middle",
+            "loops": [
+                {
+                    "output": "T",
+                    "input": "Q",
+                    "setpoint": 385.1107,
+                    "controller": {"type": "pid", "Kc": 5e5, "tau_I": 1, "action": "direct"},
+                    "sampling_time": 0.05,
+                    "sensor": {"theta": 0.05},
+                    "noise": {"std": 0.2, "seed": 1},
+                    "modes": [{"t": 0, "mode": "manual"}, {"t": 0.5, "mode": "auto"}],
+                }
+            ],
+        }
+    },
 }
 
 
@@ -103,12 +141,26 @@ def show_plant(plant_id: PlantId) -> Response:
     responses={200: {"model": SimulationAnswer}, **ERRORS, **NOT_FOUND, **BUSY},
 )
 async def simulate_plant(
-    plant_id: PlantId, request: Annotated[SimulationRequest, Body(openapi_examples=EXAMPLES)], workers: Workers
+    plant_id: PlantId, request: Annotated[RunRequest, Body(openapi_examples=EXAMPLES)], workers: Workers
 ) -> Response:
     """States, outputs and inputs of a plant over time, from its own initial state or another one.
 
     Inputs step, ramp, oscillate, follow a table or carry noise, each a sum of these; events are located.
     """
-    settings = open_loop_settings(request, _find(plant_id).document)
+    settings = open_loop_settings(request, _find(plant_id).document, request.start)
     answer = await workers.run(simulate, ModelSource(PLANT, plant_id), settings)
+    return json_response(answer, request.arrays)
+
+
+@router.post(
+    "/plants/{plant_id}/control",
+    summary="Control a plant",
+    responses={200: {"model": ControlAnswer}, **ERRORS, **NOT_FOUND, **BUSY},
+)
+async def control_plant(
+    plant_id: PlantId, request: Annotated[ControlRequest, Body(openapi_examples=CONTROL_EXAMPLES)], workers: Workers
+) -> Response:
+    """A plant with up to three PID loops, continuous or sampled, with saturation, manual and auto, valve and sensor."""
+    settings = open_loop_settings(request, _find(plant_id).document)
+    answer = await workers.run(control, ModelSource(PLANT, plant_id), settings, control_loops(request))
     return json_response(answer, request.arrays)

@@ -91,6 +91,10 @@ class _Lsoda:
             # the right-hand side counts
             nsteps=10**7,
         )
+        self.max_step = problem.max_step
+        self.begin(problem)
+
+    def begin(self, problem: Problem) -> None:
         self.solver.set_initial_value(problem.x, problem.t)
 
     def advance(self, t: float) -> FloatArray:
@@ -135,6 +139,13 @@ class _Stepping:
         return np.array(self.between(t))
 
 
-def make_solver(method: str, problem: Problem, tolerances: Tolerances) -> Solver:
-    """A solver at the start of a problem; ``method`` is one of METHODS. LSODA may look a step beyond the end."""
+def make_solver(method: str, problem: Problem, tolerances: Tolerances, used: Solver | None = None) -> Solver:
+    """A solver at the start of a problem; ``method`` is one of METHODS. LSODA may look a step beyond the end.
+
+    One that was used for the same equations begins anew where it can: from sample to sample, setting it up would take
+    as long as solving.
+    """
+    if isinstance(used, _Lsoda) and used.max_step == problem.max_step:
+        used.begin(problem)
+        return used
     return _Lsoda(problem, tolerances) if method == "LSODA" else _Stepping(method, problem, tolerances)
