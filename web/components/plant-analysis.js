@@ -57,6 +57,12 @@ export function mountPlantAnalysis(host, bench, options) {
   });
   frame.root.classList.add("plant-analysis");
 
+  /** @param {any} error */
+  function complain(error) {
+    setText(message, [sentence(error.message), sentence(error.hint)].join(" ").trim());
+    frame.root.classList.add("stale");
+  }
+
   const transport = createTransport({
     send: options.send,
     onAnswer(next) {
@@ -67,10 +73,7 @@ export function mountPlantAnalysis(host, bench, options) {
       options.onAnswer?.(answer);
       draw(false);
     },
-    onError(error) {
-      setText(message, [sentence(error.message), sentence(error.hint)].join(" ").trim());
-      frame.root.classList.add("stale");
-    },
+    onError: complain,
     retryAfter: (error) => error.retryAfter ?? null,
   });
 
@@ -109,6 +112,7 @@ export function mountPlantAnalysis(host, bench, options) {
     root: frame.root,
     ask,
     again,
+    complain,
     get answer() {
       return answer;
     },

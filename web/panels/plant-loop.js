@@ -20,6 +20,18 @@ const HELP =
   "A PID controller keeps an output of the nonlinear plant at its setpoint by moving one input, from the start that is chosen above. " +
   "Raise the setpoint step, or lower a limit, until the controller saturates, and compare the ways against windup. Leave the sampling time empty for a continuous controller.";
 
+/** Sign of the first of CB, CAB, CA²B ... that is not zero. @param {number[][]} A @param {number[][]} B @param {number[][]} C */
+export function firstMove(A, B, C) {
+  let x = B.map((row) => row[0] ?? 0);
+  for (let k = 0; k < Math.max(1, A.length); k++) {
+    const markov = (C[0] ?? []).reduce((sum, c, i) => sum + c * (x[i] ?? 0), 0);
+    const size = (C[0] ?? []).reduce((sum, c, i) => sum + Math.abs(c * (x[i] ?? 0)), 0);
+    if (Math.abs(markov) > 1e-9 * size) return Math.sign(markov);
+    x = A.map((row) => row.reduce((sum, a, i) => sum + a * (x[i] ?? 0), 0));
+  }
+  return 0;
+}
+
 /**
  * @param {HTMLElement} host
  * @param {PlantBench} bench
@@ -46,17 +58,23 @@ export function mount(host, bench, run, api, { window }) {
   /** Fields that are in units of the chosen output and input. @type {Record<string, import("../components/number-field.js").NumberField>} */
   let sized = {};
   const place = h("div", { class: "field-row" });
+  // Until someone types a setpoint it is where the run starts.
+  let typed = false;
+  const suggest = h("button", { type: "button", class: "button", onclick: () => void propose() }, "Suggest gain and action");
 
   function shape() {
     const y = bench.answer.values[output.value] ?? 0;
     const u = bench.inputs.find(({ name }) => name === input.value);
     if (!u) return;
+    typed = false;
     const [yUnit, uUnit] = [bench.unit(output.value), bench.unit(input.value)];
     const span = usualRange(u);
-    const now = run.history.t.length > 0 ? run.values() : bench.answer.values;
-    const level = now[output.value] ?? y;
+    const level = startOf() ?? y;
     sized = {
-      setpoint: number("Setpoint", { value: Number(level.toPrecision(6)), unit: yUnit }, changed),
+      setpoint: number("Setpoint", { value: Number(level.toPrecision(6)), unit: yUnit }, () => {
+        typed = true;
+        changed();
+      }),
       step: number("Setpoint step", { value: round125(0.02 * Math.abs(level) || 0.1), unit: yUnit }, changed),
       Kc: number("Gain Kc", { value: round125((span.max - span.min) / (10 * (Math.abs(level) * 0.1 || 1))), unit: uUnit || yUnit ? `${uUnit || "1"}/${yUnit || "1"}` : "", min: 0 }, changed),
       low: number("u at least", { value: u.min ?? null, unit: uUnit, optional: true }, changed),
@@ -65,16 +83,40 @@ export function mount(host, bench, run, api, { window }) {
     place.replaceChildren(...Object.values(sized));
   }
 
+  /** The output where the run starts. */
+  const startOf = () => run.history.columns[`outputs.${output.value}`]?.[0];
+
+  /** From the linear model: the action from the direction in which u moves y first, the gain from how far. */
+  async function propose() {
+    suggest.disabled = true;
+    try {
+      const { channel, time_constants: times } = await api.workOut(bench.document.id, "linearize", { ...bench.request(), near: bench.setting.start, input: input.value, output: output.value });
+      const { A, B, C } = channel.ss;
+      const direction = firstMove(A, B, C);
+      if (direction === 0 || !channel.gain) throw new Error(`${input.value} does not move ${output.value}`);
+      action.value = direction > 0 ? "reverse" : "direct";
+      if (sized["Kc"]) sized["Kc"].value = round125(2 / Math.abs(channel.gain));
+      if (times[0]) tau_I.value = round125(times[0]);
+      analysis.ask();
+    } catch (error) {
+      analysis.complain(error);
+    } finally {
+      suggest.disabled = false;
+    }
+  }
+
   const analysis = mountPlantAnalysis(host, bench, {
     id: "plant-loop",
     title: "Closed loop",
     help: HELP,
     action: "Close the loop",
     figure: createFigure,
-    form: [fieldRow(output.root, input.root, action.root, windup.root), place, fieldRow(tau_I, tau_D, sampling, manual, horizon)],
+    form: [fieldRow(output.root, input.root, action.root, windup.root), place, fieldRow(tau_I, tau_D, sampling, manual, horizon), suggest],
     send: (request) => api.workOut(bench.document.id, "control", request),
     request() {
       const { setpoint, step, Kc, low, high } = sized;
+      const begins = startOf();
+      if (setpoint && !typed && begins !== undefined) setpoint.value = Number(begins.toPrecision(6));
       if (setpoint?.value == null || Kc?.value == null || horizon.value === null) return null;
       const modes = manual.value === null ? [] : [{ t: 0, mode: "manual" }, { t: manual.value, mode: "auto" }];
       const inputs = bench.request().inputs;
