@@ -65,7 +65,7 @@ export function createPlantBench(answer, search = "") {
     timeUnit: document.time_unit ?? "s",
     setting,
     /** @param {string} name */
-    unit: (name) => all.find((each) => each.name === name)?.unit?.replace(/^-$/, "") ?? "",
+    unit: (name) => all.find((each) => each.name === name)?.unit?.replace(/^-$/, "").replaceAll("^2", "²").replaceAll("^3", "³") ?? "",
     /** What differs from the document, as every route of the plant takes it. */
     request: () => ({ inputs: changed(setting.inputs, own.inputs), parameters: changed(setting.parameters, own.parameters) }),
     /** @param {{inputs?: Values, parameters?: Values}} patch @param {{moving?: boolean}} [how] */

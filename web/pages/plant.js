@@ -6,11 +6,18 @@ import { paceOf, round125 } from "../core/plant-pace.js";
 import { createPlantRun } from "../core/plant-run.js";
 import { h } from "../components/dom.js";
 import "../components/site-header.js";
+import * as balance from "../panels/plant-balance.js";
 import * as experiment from "../panels/plant-experiment.js";
 import * as facts from "../panels/plant-facts.js";
 import * as inputs from "../panels/plant-inputs.js";
+import * as linear from "../panels/plant-linear.js";
+import * as loop from "../panels/plant-loop.js";
+import * as map from "../panels/plant-map.js";
+import * as phase from "../panels/plant-phase.js";
 import * as picture from "../panels/plant-picture.js";
 import * as plot from "../panels/plant-plot.js";
+import * as profile from "../panels/plant-profile.js";
+import * as steady from "../panels/plant-steady.js";
 
 /** Seconds in which the curves of an experiment are played. */
 const PLAYED_IN = 10;
@@ -43,6 +50,18 @@ async function open(id, main) {
   const knobs = inputs.mount(rail, bench);
   experiment.mount(rail, bench, run, api, { window: round125(5 * (answer.time_scale ?? 1)) });
   const told = facts.mount(below, bench);
+  const analyses = h("div", { class: "plant-analyses" });
+  below.append(analyses);
+  const rows = profile.mount(analyses, bench, run);
+  const { inputs: u = [], states } = model;
+  steady.mount(analyses, bench, api);
+  if (u.length > 0) {
+    map.mount(analyses, bench, api);
+    linear.mount(analyses, bench, run, api);
+    loop.mount(analyses, bench, run, api, { window: round125(5 * (answer.time_scale ?? 1)) });
+  }
+  if (states.length >= 2) phase.mount(analyses, bench, api);
+  balance.mount(analyses, bench, api);
 
   let frame = 0;
   let before = 0;
@@ -54,11 +73,13 @@ async function open(id, main) {
     before = now;
     pictured.frame();
     plotted.frame(now);
+    rows?.frame(now);
     if (run.playing) frame ||= requestAnimationFrame(show);
   }
   refresh = () => {
     pictured.refresh();
     plotted.refresh({ anew: run.whole !== whole });
+    rows?.refresh();
     whole = run.whole;
     if (frame === 0) {
       before = performance.now();

@@ -2,7 +2,7 @@
 
 /** @import {PlantBench} from "../core/plant-bench.js" */
 
-import { formatNumber } from "../core/format.js";
+import { formatShort } from "../core/roots.js";
 import { h } from "../components/dom.js";
 import { captioned, headRow } from "../components/facts.js";
 import { showMath } from "../components/mathml.js";
@@ -21,7 +21,7 @@ export function mount(host, bench) {
       return place;
     }),
   );
-  const rows = bench.parameters.map(({ name, value, unit, min, max, meaning, source }) => {
+  const rows = bench.parameters.map(({ name, value, min, max, meaning, source }) => {
     const field = document.createElement("number-field");
     for (const [key, text] of Object.entries({ label: name, unit: bench.unit(name), min, max })) if (text !== undefined) field.setAttribute(key, String(text));
     field.value = bench.setting.parameters[name] ?? value;
@@ -32,8 +32,8 @@ export function mount(host, bench) {
       {},
       h("td", {}, field),
       h("th", { scope: "row" }, meaning ?? name),
-      h("td", {}, formatNumber(value, 4)),
-      h("td", {}, `${min === undefined ? "" : formatNumber(min)} … ${max === undefined ? "" : formatNumber(max)}${unit ? ` ${unit}` : ""}`),
+      h("td", {}, formatShort(value)),
+      h("td", {}, `${min === undefined ? "" : formatShort(min)} … ${max === undefined ? "" : formatShort(max)}${bench.unit(name) ? ` ${bench.unit(name)}` : ""}`),
       h("td", { class: "because" }, source ?? ""),
     );
   });

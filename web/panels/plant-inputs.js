@@ -5,7 +5,8 @@
 
 import { round125 } from "../core/plant-pace.js";
 import { usualRange } from "../core/plant-bench.js";
-import { formatNumber, formatWithUnit } from "../core/format.js";
+import { formatWithUnit } from "../core/format.js";
+import { formatShort } from "../core/roots.js";
 import { h } from "../components/dom.js";
 import "../components/gain-slider.js";
 
@@ -34,7 +35,7 @@ export function mount(host, bench) {
 
   /** @param {Quantity} input */
   function control(input) {
-    const { name, value, unit, min, max, meaning } = input;
+    const { name, value, min, max, meaning } = input;
     const range = usualRange(input);
     const step = round125(STEP * (range.max - range.min));
     const slider = document.createElement("gain-slider");
@@ -51,7 +52,7 @@ export function mount(host, bench) {
       const next = Number(((bench.setting.inputs[name] ?? value) + by).toPrecision(10));
       bench.set({ inputs: { [name]: Math.min(max ?? Infinity, Math.max(min ?? -Infinity, next)) } });
     };
-    const size = formatWithUnit(step, unit === "-" ? "" : (unit ?? ""), 2);
+    const size = formatWithUnit(step, bench.unit(name), 2);
     return h(
       "div",
       { class: "plant-input" },
@@ -59,7 +60,7 @@ export function mount(host, bench) {
       h(
         "div",
         { class: "plant-input-more" },
-        h("span", {}, `nominal ${formatNumber(value)}${min !== undefined && max !== undefined ? `, from ${formatNumber(min)} to ${formatNumber(max)}` : ""}`),
+        h("span", {}, `nominal ${formatShort(value)}${min !== undefined && max !== undefined ? `, from ${formatShort(min)} to ${formatShort(max)}` : ""}`),
         h("button", { type: "button", class: "button small", "aria-label": `Step ${name} down by ${size}`, title: `Step down by ${size}`, onclick: () => nudge(-step) }, "Step −"),
         h("button", { type: "button", class: "button small", "aria-label": `Step ${name} up by ${size}`, title: `Step up by ${size}`, onclick: () => nudge(step) }, "Step +"),
       ),

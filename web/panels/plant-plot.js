@@ -75,7 +75,7 @@ export function mount(host, bench, run, options) {
   function draw(moving) {
     const shown = curves.filter(({ on }) => on);
     const { t, columns } = run.history;
-    if (shown.length === 0) return;
+    if (shown.length === 0 || t.length === 0) return;
     const window = timeAxis();
     const first = Math.max(0, t.findIndex((time) => time >= window[0]) - 1);
     const past = run.whole ? t.length : t.findIndex((time) => time > run.clock);

@@ -22,7 +22,6 @@ class SimulationRequest(Model):
     """How long, with which inputs, from where."""
 
     horizon: Annotated[float, Field(ge=1e-9, le=1e9, description="[time]")]
-    start: Annotated[float, Field(ge=0, le=1e9, description="Time at the start: a run goes on where one ended.")] = 0.0
     points: Annotated[int, Field(ge=2, le=5000)] = 500
     operating_point: Annotated[
         str | None, Field(max_length=64, description="Its inputs, parameters and states are the nominal ones.")
@@ -34,6 +33,12 @@ class SimulationRequest(Model):
         Literal["LSODA", "RK45", "Radau", "BDF"], Field(description="LSODA changes between stiff and not by itself.")
     ] = "LSODA"
     arrays: Literal["list", "f4"] = "list"
+
+
+class RunRequest(SimulationRequest):
+    """A simulation that may go on where another one ended."""
+
+    start: Annotated[float, Field(ge=0, le=1e9, description="Time at the start; inputs know it [time].")] = 0.0
 
 
 class ControlRequest(SimulationRequest):
@@ -95,7 +100,7 @@ def workers(request: Request) -> WorkerPool:
 Workers = Annotated[WorkerPool, Depends(workers)]
 
 
-def open_loop_settings(request: SimulationRequest, model: ModelParts) -> OpenLoopSettings:
+def open_loop_settings(request: SimulationRequest, model: ModelParts, start: float = 0.0) -> OpenLoopSettings:
     """The request as a worker takes it: operating point and nominal values put in.
 
     Raises
@@ -112,7 +117,7 @@ def open_loop_settings(request: SimulationRequest, model: ModelParts) -> OpenLoo
             inputs[name] = course
             continue
         with located(f"inputs.{name[:40]}"):
-            inputs[name] = course.to_engine(nominal.get(name, 0.0), request.start + request.horizon)
+            inputs[name] = course.to_engine(nominal.get(name, 0.0), start + request.horizon)
     return OpenLoopSettings(
         request.horizon,
         request.points,
@@ -120,7 +125,7 @@ def open_loop_settings(request: SimulationRequest, model: ModelParts) -> OpenLoo
         {**(point.parameters if point else {}), **request.parameters},
         {**(point.near if point else {}), **request.initial},
         request.method,
-        request.start,
+        start,
     )
 
 

@@ -52,7 +52,7 @@ class PlantAnswer(Answer):
     values: Annotated[dict[str, float], Field(description="Every signal at the plant's initial state.")]
     time_scale: Annotated[
         float | None,
-        Field(description="Slowest time constant about the initial state [time]; null where there is none."),
+        Field(description="Slowest time constant about the initial state [time]; null without one."),
     ]
 
 

@@ -12,7 +12,7 @@ from looplab.api.answers.nonlinear import ControlAnswer, PlantAnswer, PlantList,
 from looplab.api.docs import BUSY, ERRORS
 from looplab.api.encode import json_response
 from looplab.api.errors import ApiError
-from looplab.api.simulations import ControlRequest, SimulationRequest, Workers, control_loops, open_loop_settings
+from looplab.api.simulations import ControlRequest, RunRequest, Workers, control_loops, open_loop_settings
 from looplab.api.strict import StrictRoute
 from looplab.engine.nonlinear import CompiledModel, latex_equations, slowest_time_constant
 from looplab.jobs.tasks import PLANT, ModelSource, control, simulate
@@ -141,13 +141,13 @@ def show_plant(plant_id: PlantId) -> Response:
     responses={200: {"model": SimulationAnswer}, **ERRORS, **NOT_FOUND, **BUSY},
 )
 async def simulate_plant(
-    plant_id: PlantId, request: Annotated[SimulationRequest, Body(openapi_examples=EXAMPLES)], workers: Workers
+    plant_id: PlantId, request: Annotated[RunRequest, Body(openapi_examples=EXAMPLES)], workers: Workers
 ) -> Response:
     """States, outputs and inputs of a plant over time, from its own initial state or another one.
 
     Inputs step, ramp, oscillate, follow a table or carry noise, each a sum of these; events are located.
     """
-    settings = open_loop_settings(request, _find(plant_id).document)
+    settings = open_loop_settings(request, _find(plant_id).document, request.start)
     answer = await workers.run(simulate, ModelSource(PLANT, plant_id), settings)
     return json_response(answer, request.arrays)
 

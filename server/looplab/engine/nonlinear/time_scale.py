@@ -14,10 +14,7 @@ _INTEGRATOR = 1e-9
 def slowest_time_constant(model: CompiledModel) -> float | None:
     r"""The slowest time constant of a model about its own initial state.
 
-    .. math::
-
-        \tau = \max_{\lambda_i \ne 0} \frac{1}{|\lambda_i|}, \quad
-        \lambda_i \text{ the eigenvalues of } \partial f/\partial x
+    .. math:: \tau = \max_{\lambda_i \ne 0} \frac{1}{|\lambda_i|}, \quad \det(\lambda_i I - \partial f/\partial x) = 0
 
     Parameters
     ----------
