@@ -45,7 +45,8 @@ def _summary(model: CompiledModel) -> dict[str, Any]:
     }
 
 
-def _find(plant_id: str) -> CompiledModel:
+def find_plant(plant_id: str) -> CompiledModel:
+    """The plant; raises ApiError 404."""
     try:
         return load_plant(plant_id)
     except UnknownPlant as error:
@@ -67,7 +68,7 @@ def show_plant(plant_id: PlantId) -> Response:
     """The plant's document, as an author would write it, and its equations as formulas."""
     equations = [
         {"path": each.path, "latex": each.latex, "mathml": render_math(each.latex, display=True)}
-        for each in latex_equations(_find(plant_id))
+        for each in latex_equations(find_plant(plant_id))
     ]
     return json_response({"document": plant_document(plant_id), "equations": equations})
 
@@ -84,6 +85,6 @@ async def simulate_plant(
 
     Inputs step, ramp, oscillate, follow a table or carry noise, each a sum of these; events are located.
     """
-    settings = open_loop_settings(request, _find(plant_id).document)
+    settings = open_loop_settings(request, find_plant(plant_id).document)
     answer = await workers.run(simulate, ModelSource(PLANT, plant_id), settings)
     return json_response(answer, request.arrays)

@@ -104,9 +104,9 @@ def phase_plane(
         except NonFinite:
             return np.full(2, np.nan)
 
-    h, v = (np.linspace(*bounds, grid) for bounds in window)
+    h, v = (np.linspace(low, high, grid) for low, high in window)
     coarse = np.array([[rates(a, b) for a in h] for b in v])
-    fine_h, fine_v = (np.linspace(*bounds, _FINE + 1) for bounds in window)
+    fine_h, fine_v = (np.linspace(low, high, _FINE + 1) for low, high in window)
     fine = np.array([[rates(a, b) for a in fine_h] for b in fine_v])
     first = zero_lines(lambda a, b: float(rates(a, b)[0]), fine[..., 0], fine_h, fine_v)
     second = zero_lines(lambda a, b: float(rates(a, b)[1]), fine[..., 1], fine_h, fine_v)

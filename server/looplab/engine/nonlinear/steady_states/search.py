@@ -219,7 +219,7 @@ def _at_home(equations: SteadyEquations, root: Root, home: FloatArray, box: Floa
 
 def steady_state(equations: SteadyEquations, root: Root, found_by: int = 1) -> SteadyState:
     """A solution with its verdict, judged by the free states alone where others are held."""
-    x, u, p = equations.arguments(root.y)
+    x = equations.arguments(root.y)[0]
     poles, verdict, because = judge(equations.jacobian(root.y))
     names = tuple(equations.model.state_names[equations.free[index]] for index in _free(root))
     residual = float(np.abs(equations.residual(root.y)).max())
