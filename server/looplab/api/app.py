@@ -17,7 +17,9 @@ from looplab.api.routes import (
     labs,
     laplace,
     loop,
+    model_steady_states,
     models,
+    plant_steady_states,
     plants,
     response,
     root_locus,
@@ -70,7 +72,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     v1 = APIRouter(prefix="/api/v1")
     for module in (
         *(health, loop, frequency, root_locus, tune, laplace, labs, routh, stability, response, state_space, connect),
-        *(plants, models),
+        *(plants, models, plant_steady_states, model_steady_states),
     ):
         v1.include_router(module.router)
     app.include_router(v1)
