@@ -249,3 +249,42 @@ def test_symbols_that_are_no_latex_leave_the_formula_out(post: Any) -> None:
     answer = post("/models/validate", draft).json()
     assert answer["valid"]
     assert answer["equations"][0]["mathml"] == ""
+
+
+def test_a_run_goes_on_where_one_ended(post: Any) -> None:
+    course = {"T_f": {"add": [{"type": "step", "amplitude": 80, "start": 3}]}}
+    whole = simulated(post, "/plants/thermometer/simulate", {"horizon": 6, "points": 61, "inputs": course})
+    first = simulated(post, "/plants/thermometer/simulate", {"horizon": 2, "points": 21, "inputs": course})
+    rest = simulated(
+        post,
+        "/plants/thermometer/simulate",
+        {
+            "start": 2,
+            "horizon": 4,
+            "points": 41,
+            "inputs": course,
+            "initial": {name: values[-1] for name, values in first["states"].items()},
+        },
+    )
+    # The step comes at t = 3 of the clock, not of the request.
+    assert rest["t"][0] == 2
+    assert rest["t"][-1] == 6
+    np.testing.assert_allclose(rest["states"]["T_m"], whole["states"]["T_m"][20:], rtol=1e-7)
+
+
+def test_a_run_tells_the_variables(client: Any, post: Any) -> None:
+    document = client.get("/api/v1/plants/gravity-drained-tank").json()["document"]
+    beta = next(each["value"] for each in document["parameters"] if each["name"] == "beta")
+    answer = simulated(post, "/plants/gravity-drained-tank/simulate", {"horizon": 5, "points": 11, "inputs": {"Fi": 1}})
+    np.testing.assert_allclose(answer["variables"]["F"], beta * np.sqrt(answer["states"]["h"]), rtol=1e-14)
+
+
+def test_a_plant_comes_with_its_drawing_its_values_and_its_pace(client: Any) -> None:
+    plant = client.get("/api/v1/plants/gravity-drained-tank").json()
+    values = {each["name"]: each["value"] for each in plant["document"]["parameters"]}
+    h = plant["document"]["states"][0]["initial"]
+    # dh/dt = (Fi - beta sqrt(h))/A: the time constant is 2 A sqrt(h)/beta.
+    assert plant["time_scale"] == pytest.approx(2 * values["A"] * math.sqrt(h) / values["beta"], rel=1e-14)
+    assert plant["values"]["F"] == pytest.approx(values["beta"] * math.sqrt(h), rel=1e-14)
+    assert plant["drawing"]["shapes"]
+    assert plant["group"] == "Tanks"

@@ -8,12 +8,12 @@ from typing import Annotated, Literal, Protocol
 from fastapi import Depends, Request
 from pydantic import Field
 
-from looplab.engine.errors import InvalidInput
 from looplab.engine.nonlinear.control_loop import ControlLoop
 from looplab.engine.nonlinear.inputs import InputCourse
 from looplab.jobs import WorkerPool
 from looplab.jobs.tasks import OpenLoopSettings
 from looplab.schemas import ControlLoopShape, InputCourses, Model, located
+from looplab.schemas.operating_points import OperatingPointParts, find_operating_point
 
 Values = Annotated[dict[str, float], Field(max_length=200)]
 
@@ -59,26 +59,6 @@ class Named(Protocol):
         """Its nominal value."""
 
 
-class Point(Protocol):
-    """What an operating point's document and its request shape have in common."""
-
-    @property
-    def name(self) -> str:
-        """Its name."""
-
-    @property
-    def inputs(self) -> Mapping[str, float]:
-        """Inputs that are not nominal there."""
-
-    @property
-    def parameters(self) -> Mapping[str, float]:
-        """Parameters that are not nominal there."""
-
-    @property
-    def near(self) -> Mapping[str, float]:
-        """States there."""
-
-
 class ModelParts(Protocol):
     """What a document and its request shape have in common."""
 
@@ -87,7 +67,7 @@ class ModelParts(Protocol):
         """Inputs."""
 
     @property
-    def operating_points(self) -> Sequence[Point]:
+    def operating_points(self) -> Sequence[OperatingPointParts]:
         """Operating points."""
 
 
@@ -108,7 +88,7 @@ def open_loop_settings(request: SimulationRequest, model: ModelParts, start: flo
     InvalidInput
         The model has no such operating point, or an input's course makes no sense.
     """
-    point = _operating_point(request.operating_point, model.operating_points)
+    point = find_operating_point(request.operating_point, model.operating_points)
     at_point: Mapping[str, float] = point.inputs if point else {}
     nominal = {each.name: each.value for each in model.inputs} | dict(at_point)
     inputs: dict[str, float | InputCourse] = dict(at_point)
@@ -136,17 +116,3 @@ def control_loops(request: ControlRequest) -> list[ControlLoop]:
         with located(f"loops[{index}]"):
             out.append(loop.to_engine(request.horizon))
     return out
-
-
-def _operating_point(name: str | None, points: Sequence[Point]) -> Point | None:
-    if name is None:
-        return None
-    found = next((point for point in points if point.name == name), None)
-    if found is None:
-        known = ", ".join(point.name for point in points)
-        raise InvalidInput(
-            "the model has no operating point of this name",
-            field="operating_point",
-            hint=f"it has {known}" if known else "leave it out",
-        )
-    return found

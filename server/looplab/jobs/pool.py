@@ -24,7 +24,13 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 # Read by the process that the workers are copies of, so that a new one is there at once.
-PRELOAD = ["looplab.jobs.budget", "looplab.jobs.tasks", "looplab.engine.nonlinear.control_loop.simulation"]
+PRELOAD = [
+    "looplab.jobs.budget",
+    "looplab.jobs.tasks",
+    "looplab.jobs.steady_tasks",
+    "looplab.jobs.linear_tasks",
+    "looplab.engine.nonlinear.control_loop.simulation",
+]
 # A short burst is held back rather than refused.
 HOLD = 0.5
 LONGEST_WAIT = 10.0
@@ -114,7 +120,7 @@ class WorkerPool:
     def _too_slow(self) -> TooSlow:
         return TooSlow(
             f"this takes more than {self.budget:g} s of computing",
-            hint="a shorter horizon, or a model that is less stiff or switches less",
+            hint="a shorter horizon, fewer starts, or a model that is smaller, less stiff or switches less",
         )
 
     async def _admission(self) -> None:

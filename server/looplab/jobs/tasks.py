@@ -67,7 +67,7 @@ def model_of(source: ModelSource) -> CompiledModel:
 
 
 @contextmanager
-def _located(source: ModelSource, kind: type[EngineError] = EngineError) -> Iterator[None]:
+def located_in(source: ModelSource, kind: type[EngineError] = EngineError) -> Iterator[None]:
     """Errors in the model's own equations, where the model is part of the request, are in its field ``model``."""
     try:
         yield
@@ -82,9 +82,9 @@ def simulate(source: ModelSource, settings: OpenLoopSettings) -> dict[str, Any]:
     # scipy's solvers take half a second to import: the server, which only names this function, does without.
     from looplab.engine.nonlinear.simulation import simulate_open_loop
 
-    with _located(source):
+    with located_in(source):
         model = model_of(source)
-    with _located(source, NonFinite):
+    with located_in(source, NonFinite):
         found = simulate_open_loop(
             model,
             np.linspace(settings.start, settings.start + settings.horizon, settings.points),
@@ -100,9 +100,9 @@ def control(source: ModelSource, settings: OpenLoopSettings, loops: Sequence[Con
     """A simulation under control as the API answers it, arrays as ndarrays."""
     from looplab.engine.nonlinear.control_loop.simulation import simulate_control
 
-    with _located(source):
+    with located_in(source):
         model = model_of(source)
-    with _located(source, NonFinite):
+    with located_in(source, NonFinite):
         found = simulate_control(
             model,
             np.linspace(0.0, settings.horizon, settings.points),

@@ -7,6 +7,7 @@ from looplab.schemas.courses import Course, InputCourses
 from looplab.schemas.inputs import InputShape
 from looplab.schemas.loops import Loop
 from looplab.schemas.models import NonlinearModel
+from looplab.schemas.plants import PlantSystem
 from looplab.schemas.state_space import Matrices, StateSpaceSystem, state_space_latex
 from looplab.schemas.systems import (
     ExpressionSystem,
@@ -31,6 +32,7 @@ __all__ = [
     "Model",
     "NonlinearModel",
     "ParallelPID",
+    "PlantSystem",
     "PolynomialSystem",
     "SOPDTSystem",
     "StandardPID",

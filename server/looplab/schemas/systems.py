@@ -1,4 +1,4 @@
-"""A linear system as JSON: six ways to write it."""
+"""A linear system as JSON: six ways to write it, and one to take it from a plant."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pydantic import Field
 from looplab.engine.systems import FOPDT, SOPDT, TransferFunction, expression_latex, parse_transfer_function
 from looplab.engine.systems.notation import latex_number
 from looplab.schemas.base import Coefficients, DeadTime, Model, Roots, located, to_complex
+from looplab.schemas.plants import PlantSystem
 from looplab.schemas.state_space import StateSpaceSystem
 
 
@@ -129,6 +130,6 @@ class ExpressionSystem(Model):
 
 
 System = Annotated[
-    PolynomialSystem | ZPKSystem | FOPDTSystem | SOPDTSystem | ExpressionSystem | StateSpaceSystem,
+    PolynomialSystem | ZPKSystem | FOPDTSystem | SOPDTSystem | ExpressionSystem | StateSpaceSystem | PlantSystem,
     Field(discriminator="type"),
 ]

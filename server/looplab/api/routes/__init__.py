@@ -9,8 +9,10 @@ from looplab.api.routes import (
     labs,
     laplace,
     loop,
+    model_steady_states,
     models,
     optimal_tuning,
+    plant_steady_states,
     plants,
     response,
     root_locus,
@@ -38,7 +40,9 @@ ROUTERS = tuple(
         response,
         state_space,
         plants,
+        plant_steady_states,
         models,
+        model_steady_states,
         labs,
     )
 )

@@ -98,7 +98,8 @@ def _values(model: CompiledModel) -> dict[str, float]:
     }
 
 
-def _find(plant_id: str) -> CompiledModel:
+def find_plant(plant_id: str) -> CompiledModel:
+    """The plant; raises ApiError 404."""
     try:
         return load_plant(plant_id)
     except UnknownPlant as error:
@@ -118,7 +119,7 @@ def list_plants() -> Response:
 )
 def show_plant(plant_id: PlantId) -> Response:
     """The plant's document, as an author would write it, its equations as formulas, and its drawing."""
-    model = _find(plant_id)
+    model = find_plant(plant_id)
     equations = [
         {"path": each.path, "latex": each.latex, "mathml": render_math(each.latex, display=True)}
         for each in latex_equations(model)
@@ -147,7 +148,7 @@ async def simulate_plant(
 
     Inputs step, ramp, oscillate, follow a table or carry noise, each a sum of these; events are located.
     """
-    settings = open_loop_settings(request, _find(plant_id).document, request.start)
+    settings = open_loop_settings(request, find_plant(plant_id).document, request.start)
     answer = await workers.run(simulate, ModelSource(PLANT, plant_id), settings)
     return json_response(answer, request.arrays)
 
@@ -161,6 +162,6 @@ async def control_plant(
     plant_id: PlantId, request: Annotated[ControlRequest, Body(openapi_examples=CONTROL_EXAMPLES)], workers: Workers
 ) -> Response:
     """A plant with up to three PID loops, continuous or sampled, with saturation, manual and auto, valve and sensor."""
-    settings = open_loop_settings(request, _find(plant_id).document)
+    settings = open_loop_settings(request, find_plant(plant_id).document)
     answer = await workers.run(control, ModelSource(PLANT, plant_id), settings, control_loops(request))
     return json_response(answer, request.arrays)

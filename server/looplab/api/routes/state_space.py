@@ -28,7 +28,7 @@ from looplab.engine.state_space import (
 )
 from looplab.engine.systems import TransferFunction
 from looplab.labs.text import render_math
-from looplab.schemas import Matrices, Model, StateSpaceSystem, System, located, state_space_latex
+from looplab.schemas import Matrices, Model, PlantSystem, StateSpaceSystem, System, located, state_space_latex
 from looplab.schemas.base import Coefficients
 
 router = APIRouter(tags=["state space"], route_class=StrictRoute)
@@ -67,7 +67,7 @@ class StateSpaceRequest(Model):
                 return from_ode(self.equation.a, self.equation.b, self.equation.form)
         assert self.system is not None
         with located("system"):
-            if isinstance(self.system, StateSpaceSystem):
+            if isinstance(self.system, StateSpaceSystem | PlantSystem):
                 return self.system.to_model()
             return StateSpaceModel.from_transfer_function(self.system.to_engine())
 

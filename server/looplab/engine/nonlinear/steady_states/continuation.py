@@ -42,7 +42,7 @@ class SpecialPoint:
         Of the quantity.
     x : tuple of float
     determinant : float
-        Of A, relative to the product of the sizes of its rows with each state on its scale [-].
+        Of A, each row relative to that of [A, df/d(over)] with every quantity on its scale [-].
     omega : float or None
         Of the pair that crosses, where it is a Hopf point [rad/time].
     """
@@ -113,18 +113,21 @@ def trace_all(
         Whether stability matters.
     """
     seeds: list[FloatArray] = []
+    loose: set[int] = set()
     for level in levels:
         x, u, p = equations.arguments(np.append(known[0], level))
         at_level = SteadyEquations(equations.model, tuple(x), tuple(u), tuple(p), equations.free)
         for root, _ in find_roots(at_level, box[:-1], known, starts)[0]:
-            if root.null.size:
-                names = [equations.model.state_names[equations.free[i]] for i in np.flatnonzero(root.null.any(axis=0))]
-                raise InvalidInput(
-                    f"{' and '.join(names)} may have any value at the steady states, so they are no single curve",
-                    field="over",
-                    hint="a model with an integrator has a continuum of steady states; see its steady states",
-                )
-            seeds.append(np.append(root.y, level))
+            loose.update(np.flatnonzero(root.null.any(axis=0)).tolist())
+            if not root.singular:
+                seeds.append(np.append(root.y, level))
+    if loose and not seeds:
+        names = " and ".join(equations.model.state_names[equations.free[index]] for index in sorted(loose))
+        raise InvalidInput(
+            f"{names} may have any value at the steady states, so they are no curve",
+            field="over",
+            hint="a model with an integrator has a continuum of steady states",
+        )
     if not seeds:
         return CurveFollower(equations, box, box[:, 1] - box[:, 0], judged), []
     width = _scales(np.array(seeds), box)
@@ -165,7 +168,7 @@ def continue_steady_states(
     low: float | None = None,
     high: float | None = None,
     box: Box | None = None,
-    starts: int = 30,
+    starts: int = 20,
     near: Values | None = None,
 ) -> SteadyStateCurves:
     r"""Steady states over one input or parameter, followed around turning points.
@@ -230,9 +233,9 @@ def continue_steady_states(
 
 def _special(follower: CurveFollower, branch: int, index: int, curve: Curve) -> SpecialPoint:
     point = curve.points[index]
-    A = follower.equations.jacobian(point.y)[:, :-1] * follower.width[:-1]
-    sizes = np.linalg.norm(A, axis=1)
-    determinant = float(np.linalg.det(A / np.where(sizes > 0, sizes, 1.0)[:, None]))
+    whole = follower.equations.jacobian(point.y) * follower.width
+    sizes = np.linalg.norm(whole, axis=1)
+    determinant = float(np.linalg.det(whole[:, :-1] / np.where(sizes > 0, sizes, 1.0)[:, None]))
     omega = None
     if point.special == "hopf":
         axis = min((pole for pole in point.poles if pole.imag > 0), key=lambda pole: abs(pole.real))

@@ -18,6 +18,7 @@ MAX_POINTS = 800
 _FIRST, _LONGEST, _SHORTEST = 2e-3, 1e-2, 1e-8
 # Cosine of the largest angle between neighbouring tangents.
 _STRAIGHT = 0.985
+_TURN = 1e-3
 TURNING, HOPF, BRANCH = "turning", "hopf", "branch"
 
 
@@ -25,7 +26,8 @@ TURNING, HOPF, BRANCH = "turning", "hopf", "branch"
 class CurvePoint:
     """A point of a curve: unknowns and over, unit tangent in scaled coordinates, eigenvalues (rightmost first).
 
-    ``special`` is empty, or TURNING, HOPF or BRANCH.
+        ``special`` is empty, or _TURN = 1e-3
+    TURNING, HOPF or BRANCH.
     """
 
     y: FloatArray
@@ -98,6 +100,11 @@ class CurveFollower:
     def follow(self, y: FloatArray) -> Curve:
         """The whole curve through a point, in both directions."""
         tangent = self.first_tangent(y)
+        if abs(tangent[-1]) < _TURN:
+            # Whether a start on the turn itself is before or behind it is left to rounding.
+            beside, _ = self._step(self.point(y, tangent), _FIRST)
+            if beside is not None:
+                y, tangent = beside.y, beside.tangent
         forward = self._side(self.point(y, tangent))
         if forward.closed:
             return Curve(tuple(forward.points), tuple(forward.unstable), (forward.end, forward.end), True)

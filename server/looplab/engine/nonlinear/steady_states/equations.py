@@ -90,7 +90,7 @@ def known_states(model: CompiledModel, u: Values, p: Values) -> list[Values]:
     return [start, *dict.fromkeys(each for each in near if each != start)]
 
 
-def search_box(model: CompiledModel, known: list[Values], given: Box | None = None) -> FloatArray:
+def search_box(model: CompiledModel, known: list[Values], given: Box | None = None, field: str = "box") -> FloatArray:
     """Where steady states are looked for.
 
     Parameters
@@ -100,6 +100,8 @@ def search_box(model: CompiledModel, known: list[Values], given: Box | None = No
         States to have inside where the model declares no bounds.
     given : mapping of str to (float, float), or None
         Bounds of some states.
+    field : str
+        Name of ``given`` in errors.
 
     Returns
     -------
@@ -115,7 +117,7 @@ def search_box(model: CompiledModel, known: list[Values], given: Box | None = No
     for name in given:
         if name not in model.state_names:
             hint = f"there are {', '.join(model.state_names[:12])}"
-            raise InvalidInput(f"the model has no state {name[:40]!a}", field=f"box.{name[:40]}", hint=hint)
+            raise InvalidInput(f"the model has no state {name[:40]!a}", field=f"{field}.{name[:40]}", hint=hint)
     box = np.empty((len(model.state_names), 2))
     for row, state, values in zip(box, model.document.states, np.array(known).T, strict=True):
         least, most = float(values.min()), float(values.max())
@@ -124,5 +126,5 @@ def search_box(model: CompiledModel, known: list[Values], given: Box | None = No
         high = most + reach if state.max is None else state.max
         row[:] = given.get(state.name, (low, high))
         if not (np.isfinite(row).all() and row[0] < row[1]):
-            raise InvalidInput("bounds are two numbers, the lower one first", field=f"box.{state.name}")
+            raise InvalidInput("bounds are two numbers, the lower one first", field=f"{field}.{state.name}")
     return box

@@ -20,10 +20,11 @@ _PSEUDO_STEPS = 120
 
 @dataclass(frozen=True)
 class Root:
-    """A solution, and orthonormal directions (rows, in scaled coordinates) along which it is not isolated."""
+    """A solution, orthonormal directions (rows, scaled) along which it is not isolated, and whether J is singular."""
 
     y: FloatArray
     null: FloatArray
+    singular: bool
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,7 @@ class _Linear:
         return bool((np.abs(F) <= 1e-8 * self.rows + 1e-14).all())
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def solve(equations: SteadyEquations, start: FloatArray, box: FloatArray) -> Root | None:
     """A solution from a start, by damped Newton steps with the exact Jacobian.
 
@@ -81,7 +83,8 @@ def solve(equations: SteadyEquations, start: FloatArray, box: FloatArray) -> Roo
             step = linear.step(F)
             size = float(np.linalg.norm(step))
             if size <= 1e-15 or (size <= _CLOSE and size >= 0.5 * before):
-                return Root(y, linear.V[linear.rank :]) if linear.small(F) else None
+                null = linear.V[linear.rank :]
+                return Root(y, null, bool(null.size)) if linear.small(F) else None
             damping = 1.0
             while True:
                 trial = y + damping * width * step
@@ -107,6 +110,7 @@ def _residual(equations: SteadyEquations, y: FloatArray) -> FloatArray | None:
         return None
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def settle(equations: SteadyEquations, start: FloatArray, box: FloatArray) -> Root | None:
     """A solution by implicit time steps that grow as the equations come to rest, then Newton steps.
 
@@ -133,6 +137,7 @@ def settle(equations: SteadyEquations, start: FloatArray, box: FloatArray) -> Ro
     return solve(equations, y, box)
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def correct(
     equations: SteadyEquations, guess: FloatArray, width: FloatArray, row: FloatArray, steps: int = 10
 ) -> tuple[FloatArray, int] | None:

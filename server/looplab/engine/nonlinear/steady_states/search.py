@@ -117,6 +117,7 @@ def find_roots(
         if root is None or not _inside(root.y, box):
             continue
         converged += 1
+        root = _confirmed(equations, root, box) if root.null.size else root
         for place, (other, count) in enumerate(found):
             apart = (root.y - other.y) / width
             # Along the free directions of a continuum all of it is one solution.
@@ -126,6 +127,17 @@ def find_roots(
         else:
             found.append((root, 1))
     return found, converged
+
+
+def _confirmed(equations: SteadyEquations, root: Root, box: FloatArray) -> Root:
+    """A singular Jacobian may be a continuum or a double root: only along a continuum there are solutions nearby."""
+    width = box[:, 1] - box[:, 0]
+    kept = []
+    for direction in root.null:
+        other = solve(equations, root.y + 1e-3 * width * direction, box)
+        if other is not None and abs(direction @ ((other.y - root.y) / width)) > 5e-4:
+            kept.append(direction)
+    return Root(root.y, np.array(kept).reshape(-1, root.y.size), True)
 
 
 def _inside(y: FloatArray, box: FloatArray) -> bool:
@@ -207,7 +219,7 @@ def _at_home(equations: SteadyEquations, root: Root, home: FloatArray, box: Floa
 
 def steady_state(equations: SteadyEquations, root: Root, found_by: int = 1) -> SteadyState:
     """A solution with its verdict, judged by the free states alone where others are held."""
-    x, _, _ = equations.arguments(root.y)
+    x = equations.arguments(root.y)[0]
     poles, verdict, because = judge(equations.jacobian(root.y))
     names = tuple(equations.model.state_names[equations.free[index]] for index in _free(root))
     residual = float(np.abs(equations.residual(root.y)).max())
@@ -237,7 +249,7 @@ def steady_state_near(model: CompiledModel, u: Values, p: Values, near: Values) 
             field="near",
             hint="try other states, inputs or parameters; some models have no steady state",
         )
-    return steady_state(equations, root)
+    return steady_state(equations, _confirmed(equations, root, box) if root.null.size else root)
 
 
 def outputs_at(model: CompiledModel, state: SteadyState, u: Values, p: Values) -> dict[str, float | None]:
