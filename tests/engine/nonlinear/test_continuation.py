@@ -178,3 +178,11 @@ def test_the_balance_of_one_state_and_its_errors() -> None:
         with pytest.raises(InvalidInput) as caught:
             balance_curve(compiled, compiled.u0, (), *arguments)
         assert caught.value.field == field
+
+
+def test_a_corner_is_passed() -> None:
+    """u = max(x, 4 x) + x: the slope jumps at the origin."""
+    found = curves(model("u - max(x, 4*x) - x", 0.1, inputs=setting("u", 0.3, -1, 1)), "u", box={"x": (-2, 2)})
+    (curve,) = found.curves
+    assert sorted(curve.points[end].y[-1] for end in (0, -1)) == [-1, 1]
+    assert sorted(curve.points[end].y[0] for end in (0, -1)) == pytest.approx([-0.5, 0.2], abs=1e-12)

@@ -156,3 +156,10 @@ def test_the_models_own_mistakes_end_no_search() -> None:
     found = search(model("1 - sqrt(x)", 0.5), box={"x": (-2, 4)})
     assert [state.x[0] for state in found.steady_states] == [pytest.approx(1, rel=1e-12)]
     assert json.dumps(found.box.tolist()) == "[[-2.0, 4.0]]"
+
+
+def test_a_bent_continuum_is_counted_once() -> None:
+    """x1 never changes, x2 follows its square or stays away from it: two lines, both at the x1 that is known."""
+    found = search(model(["0*x1", "(x1^2 - x2)*(x2 + 3)"], [0.5, 1]), box={"x1": (-1, 1), "x2": (-4, 4)}).steady_states
+    np.testing.assert_allclose([state.x for state in found], [[0.5, -3], [0.5, 0.25]], atol=1e-9)
+    assert all("x1" in state.free for state in found)

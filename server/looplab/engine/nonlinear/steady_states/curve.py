@@ -125,10 +125,13 @@ class CurveFollower:
             straight = there is not None and float(there.tangent @ here.tangent) >= _STRAIGHT
             if there is None or not (straight and self._plain(here, there, ds)):
                 ds *= 0.5
-                if ds < _SHORTEST:
+                if ds >= _SHORTEST:
+                    continue
+                if there is None:
                     side.end = "the curve cannot be followed any further"
                     return side
-                continue
+                # A corner, as min and max make them, is passed.
+                ds = _FIRST
             leaves = self._leaves(here, there)
             if leaves is not None:
                 self._end(side, here, there, leaves)
