@@ -18,6 +18,22 @@ export function usualRange({ value, min, max }) {
   return { min: low, max: max !== undefined && reach > 0 && high > 20 * reach && low >= 0 ? 20 * reach : high };
 }
 
+/**
+ * Where a state is worth looking at: about its operating points and its start, with room on both sides.
+ * @param {PlantAnswer} answer @param {string} name
+ * @returns {{low: number, high: number}}
+ */
+export function usualWindow({ document, values }, name) {
+  const state = document.states.find((each) => each.name === name);
+  const known = [values[name] ?? 0, ...(document.operating_points ?? []).flatMap(({ near }) => near?.[name] ?? [])];
+  const [least, most] = [Math.min(...known), Math.max(...known)];
+  const room = 0.4 * (most - least) || 0.5 * Math.abs(most) || 1;
+  const tidy = (/** @type {number} */ value) => Number(value.toPrecision(3));
+  // A slack bound below zero is there for rounding.
+  const floor = Math.abs(state?.min ?? -Infinity) < 0.01 * room ? 0 : (state?.min ?? -Infinity);
+  return { low: tidy(Math.max(floor, least - room)), high: tidy(Math.min(state?.max ?? Infinity, most + room)) };
+}
+
 /** @param {Quantity[]} quantities @returns {Values} */
 function nominal(quantities) {
   return Object.fromEntries(quantities.map(({ name, value }) => [name, value]));

@@ -3,6 +3,7 @@
 /** @import {Api} from "../core/api.js" */
 /** @import {PlantBench} from "../core/plant-bench.js" */
 
+import { usualWindow } from "../core/plant-bench.js";
 import { sentence } from "../core/format.js";
 import { h } from "../components/dom.js";
 import { choice, fieldRow, number } from "../components/form-parts.js";
@@ -18,10 +19,21 @@ export function mount(host, bench, api) {
   const { states } = bench.document;
   // A temperature is what most balances are about.
   const usual = states.find(({ unit }) => unit === "K" || unit === "°C") ?? states[0];
-  const state = choice("Over", states.map(({ name, meaning }) => ({ value: name, label: meaning ? `${name}, ${meaning}` : name })), again);
+  const state = choice("Over", states.map(({ name, meaning }) => ({ value: name, label: meaning ? `${name}, ${meaning}` : name })), () => {
+    shape();
+    again();
+  });
   state.value = usual?.name ?? "";
   const low = number("From", { value: null, optional: true }, again);
   const high = number("To", { value: null, optional: true }, again);
+  shape();
+
+  function shape() {
+    const window = usualWindow(bench.answer, state.value);
+    low.value = window.low;
+    high.value = window.high;
+  }
+
   const analysis = mountPlantAnalysis(host, bench, {
     id: "plant-balance",
     title: "Balance",

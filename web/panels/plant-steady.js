@@ -24,7 +24,7 @@ export function mount(host, bench, api) {
     figure: null,
     send: (request) => api.workOut(bench.document.id, "steady-states", request),
     request: () => ({}),
-    words: (answer) => [answer.steady_states.length > 0 ? steadyTable(answer.steady_states) : h("p", {}, "There is no steady state in this range."), h("p", { class: "field-hint" }, `${answer.converged} of ${answer.starts} starts ended at a steady state. ${sentence(answer.remark)}`)],
+    words: (answer) => [answer.steady_states.length > 0 ? steadyTable(answer.steady_states) : h("p", {}, "There is no steady state in this range."), h("p", { class: "field-hint" }, sentence(answer.remark))],
     table: (answer) => ({
       header: [...states.map(({ name }) => name), "verdict", "kind", "eigenvalues"],
       rows: answer.steady_states.map((/** @type {SteadyState} */ { x, verdict, kind, eigenvalues }) => [...states.map(({ name }) => x[name] ?? null), verdict, kind, eigenvalues.map(([re, im]) => formatComplex([re, im])).join("; ")]),
