@@ -74,7 +74,7 @@ def test_a_trajectory_starts_where_it_is_typed(page: Page):
     panel.get_by_role("button", name="Add a trajectory").click()
     panel.get_by_role("button", name=re.compile("as a table")).click()
     first = panel.locator(".data-table tbody tr").first.locator("td")
-    expect(first).to_have_text(["1", "0", "0.20000", "350.00"], timeout=SLOW)
+    expect(first).to_have_text(["1.0000", "0", "0.20000", "350.00"], timeout=SLOW)
 
 
 def test_states_in_a_row_have_a_profile(page: Page):

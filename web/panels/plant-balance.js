@@ -16,7 +16,7 @@ const SIGNALS = ["u", "y", "d", "y_m"];
 /** @param {HTMLElement} host @param {PlantBench} bench @param {Api} api */
 export function mount(host, bench, api) {
   const again = () => analysis.again();
-  const { states } = bench.document;
+  const { states } = bench.model;
   // A temperature is what most balances are about.
   const usual = states.find(({ unit }) => unit === "K" || unit === "°C") ?? states[0];
   const state = choice("Over", states.map(({ name, meaning }) => ({ value: name, label: meaning ? `${name}, ${meaning}` : name })), () => {
@@ -41,7 +41,7 @@ export function mount(host, bench, api) {
     action: "Draw the balance",
     figure: createFigure,
     form: [fieldRow(state.root, low, high)],
-    send: (request) => api.workOut(bench.document.id, "balance", request),
+    send: (request) => api.workOut(bench.model.id, "balance", request),
     request: () => ({ state: state.value, ...(low.value === null ? {} : { low: low.value }), ...(high.value === null ? {} : { high: high.value }) }),
     draw(answer, theme, held) {
       const curves = curvesOf(answer);

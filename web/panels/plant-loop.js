@@ -93,7 +93,7 @@ export function mount(host, bench, run, api, { window }) {
   async function propose() {
     suggest.disabled = true;
     try {
-      const { channel, verdict, time_constants: times } = await api.workOut(bench.document.id, "linearize", { ...bench.request(), near: bench.setting.start, input: input.value, output: output.value });
+      const { channel, verdict, time_constants: times } = await api.workOut(bench.model.id, "linearize", { ...bench.request(), near: bench.setting.start, input: input.value, output: output.value });
       const { A, B, C } = channel.ss;
       const direction = firstMove(A, B, C);
       if (direction === 0 || !channel.gain) throw new Error(`${input.value} does not move ${output.value}`);
@@ -115,7 +115,7 @@ export function mount(host, bench, run, api, { window }) {
     action: "Close the loop",
     figure: createFigure,
     form: [fieldRow(output.root, input.root, action.root, windup.root), place, fieldRow(tau_I, tau_D, sampling, manual, horizon), suggest],
-    send: (request) => api.workOut(bench.document.id, "control", request),
+    send: (request) => api.workOut(bench.model.id, "control", request),
     request() {
       const { setpoint, step, Kc, low, high } = sized;
       const begins = startOf();

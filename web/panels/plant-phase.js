@@ -15,7 +15,7 @@ const MOST_STARTS = 20;
 
 /** @param {HTMLElement} host @param {PlantBench} bench @param {Api} api */
 export function mount(host, bench, api) {
-  const { states } = bench.document;
+  const { states } = bench.model;
   const names = states.map(({ name }) => ({ value: name, label: name }));
   /** @type {Values[]} */
   let starts = [];
@@ -62,7 +62,7 @@ export function mount(host, bench, api) {
     action: "Draw the phase plane",
     figure: createFigure,
     form: [fieldRow(across.root, up.root), bounds, place],
-    send: (request) => api.workOut(bench.document.id, "phase-plane", request),
+    send: (request) => api.workOut(bench.model.id, "phase-plane", request),
     request: () => (across.value === up.value ? null : { horizontal: across.value, vertical: up.value, starts, ranges: Object.fromEntries(Object.entries(windows).map(([name, { low, high }]) => [name, [low.value, high.value]])) }),
     draw: (answer, theme) => phasePlanePlot(answer, theme),
     table: ({ trajectories, horizontal, vertical }) => ({
