@@ -29,7 +29,7 @@ from looplab.engine.state_space import StateSpaceModel, initial_state
 from looplab.engine.systems import StateSpace, TransferFunction
 from looplab.engine.systems.polynomial import ComplexArray, FloatArray
 from looplab.labs.text import render_math
-from looplab.schemas import InputShape, Loop, Model, StateSpaceSystem, System, located
+from looplab.schemas import InputShape, Loop, Model, PlantSystem, StateSpaceSystem, System, located
 
 router = APIRouter(tags=["response"], route_class=StrictRoute)
 
@@ -145,7 +145,7 @@ def _subject(request: ResponseRequest) -> _Subject:
     with located("system"):
         G = request.system.to_engine().require_proper()
         channel = None
-        if isinstance(request.system, StateSpaceSystem):
+        if isinstance(request.system, StateSpaceSystem | PlantSystem):
             channel = request.system.to_model().require_single()
         return _Subject.of(G, request.system.to_latex(), channel)
 

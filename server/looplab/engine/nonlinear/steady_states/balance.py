@@ -98,9 +98,9 @@ def balance_curve(
         raise InvalidInput(f"the model has no state {state[:40]!a}", field="state", hint=hint)
     for index, name in enumerate(curves):
         if name not in model.variable_names:
-            known = ", ".join(model.variable_names[:12]) or "none"
+            there = ", ".join(model.variable_names[:12]) or "none"
             raise InvalidInput(
-                f"the model has no variable {name[:40]!a}", field=f"curves[{index}]", hint=f"there are {known}"
+                f"the model has no variable {name[:40]!a}", field=f"curves[{index}]", hint=f"there are {there}"
             )
     s = model.state_names.index(state)
     known = known_states(model, u, p)

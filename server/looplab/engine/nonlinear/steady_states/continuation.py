@@ -24,7 +24,7 @@ from looplab.engine.systems.polynomial import FloatArray
 MAX_BRANCHES = 12
 # Values of the quantity at which branches are looked for, as parts of its range.
 _LEVELS = (0.5, 0.0, 1.0, 0.25, 0.75)
-_LEAST_SCALE = 0.02
+_LEAST_SCALE = 0.1
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class SpecialPoint:
         Of the quantity.
     x : tuple of float
     determinant : float
-        Of A, each row relative to that of [A, df/d(over)] with every quantity on its scale [-].
+        Of A, each row relative to that of [A, df/d(over)], here or at an end, every quantity on its scale [-].
     omega : float or None
         Of the pair that crosses, where it is a Hopf point [rad/time].
     """
@@ -233,8 +233,10 @@ def continue_steady_states(
 
 def _special(follower: CurveFollower, branch: int, index: int, curve: Curve) -> SpecialPoint:
     point = curve.points[index]
-    whole = follower.equations.jacobian(point.y) * follower.width
-    sizes = np.linalg.norm(whole, axis=1)
+    jacobian, width = follower.equations.jacobian, follower.width
+    whole = jacobian(point.y) * width
+    ends = (jacobian(curve.points[end].y) * width for end in (0, -1))
+    sizes = np.max([np.linalg.norm(each, axis=1) for each in (whole, *ends)], axis=0)
     determinant = float(np.linalg.det(whole[:, :-1] / np.where(sizes > 0, sizes, 1.0)[:, None]))
     omega = None
     if point.special == "hopf":

@@ -15,10 +15,12 @@ from looplab.engine.state_space.eigenvalues import eigenvalues
 from looplab.engine.systems.polynomial import ComplexArray, FloatArray
 
 MAX_POINTS = 800
-_FIRST, _LONGEST, _SHORTEST = 2e-3, 1e-2, 1e-8
+_FIRST, _LONGEST, _SHORTEST = 2e-3, 2e-2, 1e-8
 # Cosine of the largest angle between neighbouring tangents.
 _STRAIGHT = 0.985
 _TURN = 1e-3
+# How far beside a crossing of curves, as part of a step, the tangent is taken.
+_BESIDE = 1e-8
 TURNING, HOPF, BRANCH = "turning", "hopf", "branch"
 
 
@@ -26,8 +28,10 @@ TURNING, HOPF, BRANCH = "turning", "hopf", "branch"
 class CurvePoint:
     """A point of a curve: unknowns and over, unit tangent in scaled coordinates, eigenvalues (rightmost first).
 
-        ``special`` is empty, or _TURN = 1e-3
-    TURNING, HOPF or BRANCH.
+            ``special`` is empty, or _TURN = 1e-3
+    # How far beside a crossing of curves, as part of a step, the tangent is taken.
+    _BESIDE = 1e-8
+        TURNING, HOPF or BRANCH.
     """
 
     y: FloatArray
@@ -121,10 +125,13 @@ class CurveFollower:
             straight = there is not None and float(there.tangent @ here.tangent) >= _STRAIGHT
             if there is None or not (straight and self._plain(here, there, ds)):
                 ds *= 0.5
-                if ds < _SHORTEST:
+                if ds >= _SHORTEST:
+                    continue
+                if there is None:
                     side.end = "the curve cannot be followed any further"
                     return side
-                continue
+                # A corner, as min and max make them, is passed.
+                ds = _FIRST
             leaves = self._leaves(here, there)
             if leaves is not None:
                 self._end(side, here, there, leaves)
@@ -219,15 +226,35 @@ class CurveFollower:
             (lambda s: float(at(s).tangent[-1])) if turns else (lambda s: float(at(s).poles[index].real))
         )
         end = float(here.tangent @ ((there.y - here.y) / self.width))
+
+        def sign(s: float) -> float:
+            try:
+                return test(s)
+            except np.linalg.LinAlgError:
+                # Where two curves cross there is no tangent: this is the place itself.
+                return 0.0
+
         try:
-            point = at(bisect(test, 0.0, end))
-        except (NonFinite, np.linalg.LinAlgError):
+            place = bisect(sign, 0.0, end)
+            point = self._first(at, [place, place - _BESIDE * end, place + _BESIDE * end])
+        except NonFinite:
+            return None
+        if point is None:
             return None
         if turns:
             return CurvePoint(point.y, point.tangent, point.poles, TURNING)
         crossing = point.poles[index]
         complex_pair = abs(crossing.imag) > 1e-6 * float(np.abs(point.poles).max(initial=0.0))
         return CurvePoint(point.y, point.tangent, point.poles, HOPF if complex_pair else BRANCH)
+
+    @staticmethod
+    def _first(at: Callable[[float], CurvePoint], places: list[float]) -> CurvePoint | None:
+        for place in places:
+            try:
+                return at(place)
+            except np.linalg.LinAlgError:
+                continue
+        return None
 
     def passes(self, curve: Curve, y: FloatArray) -> bool:
         """Whether a point of the equations lies on a curve."""

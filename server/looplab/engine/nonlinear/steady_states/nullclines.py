@@ -12,6 +12,8 @@ from looplab.engine.systems.polynomial import FloatArray
 PlaneFunction = Callable[[float, float], float]
 Edge = tuple[int, int, bool]
 _HALVINGS = 60
+# What is left at a zero, as part of the values at the ends of its edge; more is a jump.
+_STEEP = 1e-3
 
 
 @dataclass(frozen=True)
@@ -103,7 +105,7 @@ def _zero_on(
             low = part
         else:
             high = part
-    if abs(value) > min(abs(ends[0]), abs(ends[1])):
+    if abs(value) > _STEEP * max(abs(ends[0]), abs(ends[1])):
         return None
     at = start + 0.5 * (low + high) * (end - start)
     return float(at[0]), float(at[1])

@@ -197,7 +197,10 @@ def find_steady_states(
     equations = SteadyEquations(model, known[0], u, p, tuple(range(len(model.state_names))))
     first = [np.array(each) for each in known]
     roots, converged = find_roots(equations, bounds, first, starts)
-    placed = [(_at_home(equations, root, first[0], bounds), count) for root, count in roots]
+    home = first[0]
+    placed = _distinct(
+        [(_at_home(equations, root, home, bounds), count) for root, count in roots], bounds[:, 1] - bounds[:, 0]
+    )
     states = sorted((steady_state(equations, root, count) for root, count in placed), key=lambda state: state.x)
     return SteadyStateSearch(tuple(states), len(first) + starts, converged, bounds)
 
@@ -207,14 +210,38 @@ def _free(root: Root) -> list[int]:
 
 
 def _at_home(equations: SteadyEquations, root: Root, home: FloatArray, box: FloatArray) -> Root:
-    """Of a continuum, the point whose free states are those of the known state."""
+    """Of a continuum, the point where the first free state has the value of the known state."""
     free = _free(root)
     if not free:
         return root
+    held = free[0]
+    others = [index for index in range(root.y.size) if index != held]
     start = root.y.copy()
-    start[free] = home[free]
+    start[held] = home[held]
+    if others:
+        rest = SteadyEquations(equations.model, tuple(start.tolist()), equations.u, equations.p, tuple(others))
+        found = solve(rest, start[others], box[others])
+        if found is None:
+            return root
+        start[others] = found.y
+    # The equation of the state that was held has to agree.
     again = solve(equations, start, box)
-    return again if again is not None and _inside(again.y, box) else root
+    if again is None or not _inside(again.y, box) or not np.allclose(again.y, start, rtol=1e-7, atol=1e-9):
+        return root
+    return Root(again.y, root.null, True)
+
+
+def _distinct(roots: list[tuple[Root, int]], width: FloatArray) -> list[tuple[Root, int]]:
+    """One of each: a bent continuum is found in many places, which have come to the same point."""
+    kept: list[tuple[Root, int]] = []
+    for root, count in roots:
+        for place, (other, so_far) in enumerate(kept):
+            if np.linalg.norm((root.y - other.y) / width) <= _SAME:
+                kept[place] = (other, so_far + count)
+                break
+        else:
+            kept.append((root, count))
+    return kept
 
 
 def steady_state(equations: SteadyEquations, root: Root, found_by: int = 1) -> SteadyState:
