@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,8 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from looplab.bench import accuracy, moves, ours, peer
+from looplab.bench import accuracy, moves, nonlinear_loops, ours, peer, saturated
+from looplab.bench.nonlinear_scenarios import SCENARIOS, ControlScenario
 from looplab.bench.scenarios import DELAY_FREE
 from looplab.cli import app
 from references import reference
@@ -33,6 +35,10 @@ def test_a_quick_run_writes_finite_figures(tmp_path: Path) -> None:
     assert {r["what"] for r in figures["moves"]} >= {"gain move, no locus", "gain move, with locus"}
     assert "gain move, with locus" in result.output
     for r in figures["moves"]:
+        assert r["ratio"] > 0
+    for r in figures["control"]:
+        # The reactor is unstable: what the solvers leave grows until the controller has it.
+        assert r["difference"] < 1e-2
         assert r["ratio"] > 0
     for r in figures["accuracy"]:
         assert max(r["errors"]["looplab"].values()) < 1e-10
@@ -64,6 +70,21 @@ def test_both_do_the_same_work_without_dead_time(polynomials: bool) -> None:
         np.sort_complex(np.round(a["poles"].poles, 6)), np.sort_complex(np.round(b["poles"], 6)), atol=2e-6
     )
     assert a["root_locus"].branches.shape[0] == b["root_locus"].loci.shape[1]
+
+
+@pytest.mark.parametrize("delay", [0, 10])
+def test_both_do_the_same_saturated_loop(delay: int) -> None:
+    np.testing.assert_allclose(saturated.ours(delay)(4.3), saturated.by_control(delay)(4.3), atol=1e-13)
+
+
+@pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda s: s.name)
+@pytest.mark.parametrize("sampled", [True, False])
+def test_both_do_the_same_control_loop(scenario: ControlScenario, sampled: bool) -> None:
+    short = replace(scenario, samples=60)
+    peer_work = (nonlinear_loops.by_scipy if sampled else nonlinear_loops.by_control)(short)
+    found, theirs = nonlinear_loops.ours(short, sampled)(scenario.Kc), peer_work(scenario.Kc)
+    np.testing.assert_allclose(found, theirs, atol=2e-5 * np.abs(theirs).max())
+    assert np.ptp(found) > 1e-2
 
 
 def test_no_gain_is_timed_twice() -> None:

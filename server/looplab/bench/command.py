@@ -26,13 +26,16 @@ def main(arguments: Sequence[str] = ()) -> int:
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-    from looplab.bench import accuracy, machine, moves, report, server
+    from looplab.bench import accuracy, machine, moves, nonlinear_loops, report, saturated, server
 
     console = Console()
     rounds = 5 if options.quick else 40
     requests = 100 if options.quick else 600
     results: dict[str, object] = {"machine": machine.describe(), "quick": options.quick, "rounds": rounds}
     steps = len(moves.COMPARISONS) * rounds + len(accuracy.CASES) + (0 if options.no_server else server.STEPS)
+    # The peer takes seconds for some of these.
+    few = max(3, rounds // 8)
+    steps += (saturated.STEPS + nonlinear_loops.STEPS) * few
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True) as progress:
         task = progress.add_task("starting", total=steps)
@@ -42,6 +45,7 @@ def main(arguments: Sequence[str] = ()) -> int:
 
         results["accuracy"] = accuracy.measure(tick)
         results["moves"] = moves.measure(rounds, tick)
+        results["control"] = saturated.measure(few, tick) + nonlinear_loops.measure(few, tick)
         results["server"] = None if options.no_server else server.measure(requests, tick)
     report.show(console, results)
     if options.out is not None:

@@ -7,6 +7,8 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from looplab.bench.nonlinear_loops import RTOL
+
 
 def _table(title: str, left: tuple[str, ...], right: tuple[str, ...], caption: str) -> Table:
     table = Table(title=title, title_justify="left", caption=caption, caption_justify="left")
@@ -47,6 +49,27 @@ def _accuracy(rows: list[dict[str, Any]]) -> Table:
     return table
 
 
+def _control(rows: list[dict[str, Any]]) -> Table:
+    caption = (
+        "Processor time: medians in ms and their ratio; apart: the largest difference of y. Sampled loops against "
+        "scipy by a hand-written right-hand side and solve_ivp for each sample; the others by input_output_response. "
+        f"On nonlinear plants all solve to a relative tolerance of {RTOL:g}."
+    )
+    table = _table("Loops that saturate", ("", "against"), ("looplab", "peer", "ratio", "goal", "apart"), caption)
+    plant = None
+    for r in rows:
+        if r["plant"] != plant:
+            plant = r["plant"]
+            table.add_section()
+            table.add_row(f"[bold]{plant}")
+        medians = (f"{r[side]['median_ms']:.2f}" for side in ("ours", "peer"))
+        goal = f"{r['goal']:g}" if r["goal"] else ""
+        table.add_row(
+            r["what"], r["peer_name"].split(",")[0], *medians, f"{r['ratio']:.1f}", goal, f"{r['difference']:.0e}"
+        )
+    return table
+
+
 def _server(rows: list[dict[str, Any]]) -> Table:
     caption = "Bare: as many bytes in and out, nothing computed. Goal: 8 times at most, worker 110 MB at most."
     columns = ("ms", "bare ms", "ratio", "answer", "worker")
@@ -71,7 +94,7 @@ def show(console: Console, results: dict[str, Any]) -> None:
     threads = ", ".join(sorted(set(machine["blas_threads"].values())))
     console.print(f"Python {machine['python']}, {machine['system']}, {machine['cores']} cores, BLAS threads {threads}")
     console.print(f"{packages}\n")
-    for table in (_moves(results["moves"]), _accuracy(results["accuracy"])):
+    for table in (_moves(results["moves"]), _control(results["control"]), _accuracy(results["accuracy"])):
         console.print(table, "")
     if results["server"]:
         console.print(_server(results["server"]), "")

@@ -3,6 +3,7 @@
 from looplab.engine.loop.controllers import PID
 from looplab.engine.loop.feedback_loop import FeedbackLoop
 from looplab.engine.loop.metrics import StepMetrics, default_horizon, step_metrics
+from looplab.engine.loop.saturated_loop import SaturatedLoop, SaturatedResponse, simulate_saturated
 from looplab.engine.loop.step_response import ClosedLoopStep, Response, closed_loop_step, step_response
 
 __all__ = [
@@ -10,9 +11,12 @@ __all__ = [
     "ClosedLoopStep",
     "FeedbackLoop",
     "Response",
+    "SaturatedLoop",
+    "SaturatedResponse",
     "StepMetrics",
     "closed_loop_step",
     "default_horizon",
+    "simulate_saturated",
     "step_metrics",
     "step_response",
 ]

@@ -31,7 +31,7 @@ def go(document, horizon=20.0, points=201, output="y", **more):
         {"controller": PID(1e9, 1e-3, 1.0), "u_min": -1.0, "u_max": 1.0, "anti_windup": "clamping"},
         {"controller": PID(1e12, 1e-6, 1e3), "u_min": -1.0, "u_max": 1.0, "anti_windup": "back_calculation"},
         {"controller": PID(1e9, 1.0), "sensor": Instrument(theta=0.3)},
-        {"controller": PID(50.0, 0.1), "valve": Instrument(theta=0.01), "u_min": -1.0, "u_max": 1.0},
+        {"controller": PID(50.0, 0.1), "valve": Instrument(theta=0.025), "u_min": -1.0, "u_max": 1.0},
         {"controller": PID(1e9, 1e-3), "valve": Instrument(Lag(1e-6, zeta=0.0))},
         {"controller": PID(5.0, 1e-9), "noise": MeasurementNoise(1e6, 0.02)},
     ],
@@ -39,7 +39,7 @@ def go(document, horizon=20.0, points=201, output="y", **more):
 def test_it_ends(more):
     spent = time.process_time()
     found = go(THIRD_ORDER, **more)
-    assert time.process_time() - spent < 6.0
+    assert time.process_time() - spent < 2.0
     assert np.isfinite(found.x).all()
     assert np.isfinite(found.loops[0].u).all()
     assert (found.truncated_at is None) == (found.t[-1] == 20.0)

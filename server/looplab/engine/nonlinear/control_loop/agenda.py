@@ -14,7 +14,9 @@ from looplab.engine.nonlinear.inputs import SAME_TIME, InputCourse
 from looplab.engine.nonlinear.simulation.grid import breakpoints, looks, merged, snapped
 from looplab.engine.systems.polynomial import FloatArray
 
-MAX_EDGES = 10_000
+MAX_EDGES = 5_000
+# A panel of the past takes longer than a sample.
+MAX_PANELS = 2_000
 # A jump that has gone round the loop this many times is smooth enough.
 _ROUNDS = 4
 
@@ -132,11 +134,11 @@ def _steps(jumps: FloatArray, delays: list[tuple[float, str]], start: float, end
         return []
     shortest, place = min(delays)
     step = 0.5 * shortest
-    if (end - start) / step > MAX_EDGES:
+    if (end - start) / step > MAX_PANELS:
         raise InvalidInput(
             "the dead time is too short for this horizon",
             field=place,
-            hint=f"{2 * (end - start) / MAX_EDGES:.3g} or longer, or a sampled controller",
+            hint=f"{2 * (end - start) / MAX_PANELS:.3g} or longer, or a sampled controller",
         )
     echoes = np.unique(np.append(jumps, start))
     newest = echoes

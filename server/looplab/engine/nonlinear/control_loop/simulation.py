@@ -24,6 +24,7 @@ from looplab.engine.nonlinear.simulation.grid import check_times
 from looplab.engine.nonlinear.simulation.result import EventRecord
 from looplab.engine.nonlinear.simulation.right_hand_side import Course, RunsAway
 from looplab.engine.nonlinear.simulation.run import Run
+from looplab.engine.nonlinear.simulation.short_steps import Patience
 from looplab.engine.nonlinear.simulation.solvers import Counter, Tolerances
 from looplab.engine.systems.polynomial import FloatArray
 
@@ -119,6 +120,8 @@ class _Work:
         )
         self.histories: list[tuple[History, int]] = [each for m in self.members for each in m.histories]
         self.run = Run(self.model, [courses[name] for name in self.model.input_names], self.p, method, tolerances)
+        if method == "LSODA" and all(isinstance(member, SampledMember) for member in self.members):
+            self.run.patience = Patience()
         if self.histories:
             # A step that ends beyond the piece must not look beyond what is known.
             self.run.max_step = 0.5 * shortest_delay(loops)

@@ -68,6 +68,12 @@ class RightHandSide:
         u = self._constant
         return self._f(t, x.tolist(), self.u(t) if u is None else u, self._p)
 
+    def rates(self, t: float, x: Sequence[float]) -> Values:
+        """dx/dt of a sequence of floats."""
+        self._counter.call()
+        u = self._constant
+        return self._f(t, x, self.u(t) if u is None else u, self._p)
+
     def jacobian(self, t: float, x: FloatArray) -> FloatArray:
         """df/dx, or the last one that was finite: it only steers the solver's iteration, not its result."""
         self._counter.call()

@@ -14,6 +14,7 @@ from looplab.engine.nonlinear.language import Values
 from looplab.engine.nonlinear.model import CompiledModel
 from looplab.engine.nonlinear.simulation.result import EventRecord
 from looplab.engine.nonlinear.simulation.right_hand_side import Course, RightHandSide, RunsAway
+from looplab.engine.nonlinear.simulation.short_steps import Patience, ShortSteps
 from looplab.engine.nonlinear.simulation.solvers import (
     BudgetSpent,
     Problem,
@@ -64,6 +65,8 @@ class Run:
         Why it cannot go on.
     max_step : float
         Longest step of the solver [time].
+    patience : Patience or None
+        Where it is given, a few explicit steps are tried before the solver: for pieces that are short.
     """
 
     def __init__(
@@ -85,6 +88,7 @@ class Run:
         self.approaches = 0
         self.max_step = np.inf
         self.used: Solver | None = None
+        self.patience: Patience | None = None
 
     def start(self, t: float, x: FloatArray) -> None:
         """Put it at its start."""
@@ -156,8 +160,13 @@ class Run:
                 self.samples.append((stop, self.x))
 
     def _solver(self, finish: float, max_step: float, used: Solver | None = None) -> Solver:
-        problem = Problem(self.rhs.f, self.rhs.jacobian, self.t, self.x, finish, max_step)
-        return make_solver(self.method, problem, self.tolerances, used)
+        def begin(t: float, x: FloatArray) -> Solver:
+            problem = Problem(self.rhs.f, self.rhs.jacobian, t, x, finish, max_step)
+            return make_solver(self.method, problem, self.tolerances, used)
+
+        if self.patience is None or self.patience.left <= 0:
+            return begin(self.t, self.x)
+        return ShortSteps(self.rhs.rates, self.t, self.x, self.tolerances, self.patience, begin)
 
     def _look(self, stop: float, x: FloatArray, on: list[bool]) -> None:
         """Go on to a state; events between here and there happen first."""

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from looplab.bench.control_scenarios import SCENARIOS, ControlScenario
+from looplab.bench.nonlinear_scenarios import SCENARIOS, ControlScenario
 from looplab.bench.timing import WARM_UP, interleave
 from looplab.engine.systems.polynomial import FloatArray
 
@@ -106,6 +106,9 @@ COMPARISONS: tuple[tuple[str, str, bool, Callable[[ControlScenario], Work]], ...
 )
 
 
+STEPS = len(SCENARIOS) * len(COMPARISONS)
+
+
 def measure(rounds: int, tick: Callable[[str], None]) -> list[dict[str, Any]]:
     """Time every comparison, and how far the two are apart."""
     results = []
@@ -121,5 +124,7 @@ def measure(rounds: int, tick: Callable[[str], None]) -> list[dict[str, Any]]:
                 warnings.simplefilter("ignore")
                 apart = float(np.abs(a(gains[0]) - b(gains[0])).max())
                 timed = interleave(a, b, gains, advance)
-            results.append({"plant": s.name, "what": what, "peer_name": name, "difference": apart, **timed})
+            results.append(
+                {"plant": s.name, "what": what, "peer_name": name, "goal": None, "difference": apart, **timed}
+            )
     return results
