@@ -18,6 +18,24 @@ export function usualRange({ value, min, max }) {
   return { min: low, max: max !== undefined && reach > 0 && high > 20 * reach && low >= 0 ? 20 * reach : high };
 }
 
+/**
+ * Where a state is worth looking at: about its operating points and its start, with room on both sides.
+ * @param {PlantAnswer} answer @param {string} name
+ * @returns {{low: number, high: number}}
+ */
+export function usualWindow(answer, name) {
+  const { values } = answer;
+  const model = answer.document;
+  const state = model.states.find((each) => each.name === name);
+  const known = [values[name] ?? 0, ...(model.operating_points ?? []).flatMap(({ near }) => near?.[name] ?? [])];
+  const [least, most] = [Math.min(...known), Math.max(...known)];
+  const room = 0.4 * (most - least) || 0.5 * Math.abs(most) || 1;
+  const tidy = (/** @type {number} */ value) => Number(value.toPrecision(3));
+  // A slack bound below zero is there for rounding.
+  const floor = Math.abs(state?.min ?? -Infinity) < 0.01 * room ? 0 : (state?.min ?? -Infinity);
+  return { low: tidy(Math.max(floor, least - room)), high: tidy(Math.min(state?.max ?? Infinity, most + room)) };
+}
+
 /** @param {Quantity[]} quantities @returns {Values} */
 function nominal(quantities) {
   return Object.fromEntries(quantities.map(({ name, value }) => [name, value]));
@@ -25,10 +43,10 @@ function nominal(quantities) {
 
 /** @param {PlantAnswer} answer @param {string} search  the query of the address */
 export function createPlantBench(answer, search = "") {
-  const { document } = answer;
-  const parameters = document.parameters ?? [];
-  const inputs = document.inputs ?? [];
-  const outputs = document.outputs ?? document.states;
+  const model = answer.document;
+  const parameters = model.parameters ?? [];
+  const inputs = model.inputs ?? [];
+  const outputs = model.outputs ?? model.states;
   const own = { inputs: nominal(inputs), parameters: nominal(parameters) };
   /** @type {{inputs: Values, parameters: Values, start: Values}} */
   const setting = { inputs: { ...own.inputs }, parameters: { ...own.parameters }, start: {} };
@@ -46,7 +64,7 @@ export function createPlantBench(answer, search = "") {
   };
   read("inputs", inputs);
   read("parameters", parameters);
-  read("start", document.states);
+  read("start", model.states);
 
   /** @param {Change} change */
   const tell = (change) => {
@@ -54,19 +72,19 @@ export function createPlantBench(answer, search = "") {
   };
   /** @param {Values} values @param {Values} usual */
   const changed = (values, usual) => Object.fromEntries(Object.entries(values).filter(([name, value]) => value !== usual[name]));
-  const all = [...parameters, ...inputs, ...(document.variables ?? []), ...outputs, ...document.states];
+  const all = [...parameters, ...inputs, ...(model.variables ?? []), ...outputs, ...model.states];
 
   return {
     answer,
-    document,
+    model,
     parameters,
     inputs,
     outputs,
-    timeUnit: document.time_unit ?? "s",
+    timeUnit: model.time_unit ?? "s",
     setting,
     /** @param {string} name */
     unit: (name) => all.find((each) => each.name === name)?.unit?.replace(/^-$/, "").replaceAll("^2", "²").replaceAll("^3", "³") ?? "",
-    /** What differs from the document, as every route of the plant takes it. */
+    /** What is not nominal, as every route of the plant takes it. */
     request: () => ({ inputs: changed(setting.inputs, own.inputs), parameters: changed(setting.parameters, own.parameters) }),
     /** @param {{inputs?: Values, parameters?: Values}} patch @param {{moving?: boolean}} [how] */
     set(patch, { moving = false } = {}) {

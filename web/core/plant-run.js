@@ -88,7 +88,7 @@ export function createPlantRun(bench, { simulate, speed, onChange = () => {}, wa
     busy = true;
     const asked = revision;
     const at = last();
-    const initial = at < 0 ? bench.setting.start : Object.fromEntries(bench.document.states.map(({ name }) => [name, history.columns[`states.${name}`]?.[at] ?? 0]));
+    const initial = at < 0 ? bench.setting.start : Object.fromEntries(bench.model.states.map(({ name }) => [name, history.columns[`states.${name}`]?.[at] ?? 0]));
     try {
       const answer = await simulate({ ...bench.request(), initial, start: end(), horizon: STRETCH * speed, points: POINTS });
       busy = false;
@@ -239,7 +239,7 @@ export function createPlantRun(bench, { simulate, speed, onChange = () => {}, wa
     /** The states at the clock, as a start for something else. @returns {Values} */
     stateNow() {
       const now = this.values();
-      return Object.fromEntries(bench.document.states.map(({ name }) => [name, now[name] ?? 0]));
+      return Object.fromEntries(bench.model.states.map(({ name }) => [name, now[name] ?? 0]));
     },
   };
 }

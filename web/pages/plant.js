@@ -36,7 +36,7 @@ async function open(id, main) {
   }
   const bench = createPlantBench(answer, location.search);
   const pace = paceOf(answer.time_scale, bench.timeUnit);
-  const { document: model } = bench;
+  const { model } = bench;
   document.title = `${model.title} · looplab`;
   const head = h("header", { class: "plant-head" }, h("p", { class: "plant-group" }, h("a", { href: "/plants" }, "Plants"), ` › ${answer.group}`), h("h1", {}, model.title), h("p", {}, model.summary ?? ""), model.notes ? h("p", { class: "facts" }, `Lecture notes §${model.notes}`) : null);
   const [rail, middle, right, below] = [h("div", { class: "plant-rail" }), h("div", { class: "plant-middle" }), h("div", { class: "plant-right" }), h("div", { class: "plant-below" })];

@@ -3,6 +3,7 @@
 /** @import {Api} from "../core/api.js" */
 /** @import {PlantBench} from "../core/plant-bench.js" */
 
+import { usualWindow } from "../core/plant-bench.js";
 import { sentence } from "../core/format.js";
 import { h } from "../components/dom.js";
 import { choice, fieldRow, number } from "../components/form-parts.js";
@@ -15,13 +16,24 @@ const SIGNALS = ["u", "y", "d", "y_m"];
 /** @param {HTMLElement} host @param {PlantBench} bench @param {Api} api */
 export function mount(host, bench, api) {
   const again = () => analysis.again();
-  const { states } = bench.document;
+  const { states } = bench.model;
   // A temperature is what most balances are about.
   const usual = states.find(({ unit }) => unit === "K" || unit === "°C") ?? states[0];
-  const state = choice("Over", states.map(({ name, meaning }) => ({ value: name, label: meaning ? `${name}, ${meaning}` : name })), again);
+  const state = choice("Over", states.map(({ name, meaning }) => ({ value: name, label: meaning ? `${name}, ${meaning}` : name })), () => {
+    shape();
+    again();
+  });
   state.value = usual?.name ?? "";
   const low = number("From", { value: null, optional: true }, again);
   const high = number("To", { value: null, optional: true }, again);
+  shape();
+
+  function shape() {
+    const window = usualWindow(bench.answer, state.value);
+    low.value = window.low;
+    high.value = window.high;
+  }
+
   const analysis = mountPlantAnalysis(host, bench, {
     id: "plant-balance",
     title: "Balance",
@@ -29,7 +41,7 @@ export function mount(host, bench, api) {
     action: "Draw the balance",
     figure: createFigure,
     form: [fieldRow(state.root, low, high)],
-    send: (request) => api.workOut(bench.document.id, "balance", request),
+    send: (request) => api.workOut(bench.model.id, "balance", request),
     request: () => ({ state: state.value, ...(low.value === null ? {} : { low: low.value }), ...(high.value === null ? {} : { high: high.value }) }),
     draw(answer, theme, held) {
       const curves = curvesOf(answer);

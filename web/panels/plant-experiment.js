@@ -79,7 +79,7 @@ export function mount(host, bench, run, api, { window }) {
     setText(message, "");
     try {
       const level = bench.setting.inputs[input.name] ?? input.value;
-      const answer = await api.workOut(bench.document.id, "simulate", { parameters, initial: bench.setting.start, inputs: { ...inputs, [input.name]: { level, add: [signal] } }, horizon: horizon.value, points: POINTS });
+      const answer = await api.workOut(bench.model.id, "simulate", { parameters, initial: bench.setting.start, inputs: { ...inputs, [input.name]: { level, add: [signal] } }, horizon: horizon.value, points: POINTS });
       run.show(answer);
     } catch (error) {
       const { message: text, hint } = /** @type {any} */ (error);

@@ -17,13 +17,13 @@ const STEP = 0.05;
 export function mount(host, bench) {
   /** @type {Map<string, import("../components/gain-slider.js").GainSlider>} */
   const sliders = new Map();
-  const points = bench.document.operating_points ?? [];
+  const points = bench.model.operating_points ?? [];
   const root = h(
     "section",
     { class: "plant-card", "aria-labelledby": "inputs-title" },
     h("h2", { id: "inputs-title" }, "Inputs"),
     ...bench.inputs.map(control),
-    h("h3", {}, "Start from"),
+    h("h3", {}, "Start at"),
     h(
       "div",
       { class: "row" },

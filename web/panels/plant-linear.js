@@ -66,7 +66,7 @@ export function mount(host, bench, run, api) {
     action: "Linearise",
     figure: createFigure,
     form: [fieldRow(where.root, input.root, output.root), place],
-    send: (request) => api.workOut(bench.document.id, "linearize", request),
+    send: (request) => api.workOut(bench.model.id, "linearize", request),
     request: () => ({ near: run.history.t.length > 0 ? run.stateNow() : bench.setting.start, at: where.value, input: input.value, output: output.value, steps: size === 0 ? [] : [size] }),
     draw({ responses: [response] }, theme, held) {
       return linearStepPlot({ t: response?.t ?? [], linear: response?.linear ?? [], nonlinear: response?.nonlinear ?? [], output: output.value, unit: bench.unit(output.value), timeUnit: bench.timeUnit }, theme, held);

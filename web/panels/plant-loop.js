@@ -16,6 +16,9 @@ import { plantLoopPlot } from "../plots/plant_loop.js";
 import { SIGNALS } from "../plots/signals.js";
 
 const POINTS = 601;
+/** Loop gains at rest to begin with: what is unstable needs a firmer hand. */
+const STABLE = 2;
+const UNSTABLE = 6;
 const HELP =
   "A PID controller keeps an output of the nonlinear plant at its setpoint by moving one input, from the start that is chosen above. " +
   "Raise the setpoint step, or lower a limit, until the controller saturates, and compare the ways against windup. Leave the sampling time empty for a continuous controller.";
@@ -75,7 +78,7 @@ export function mount(host, bench, run, api, { window }) {
         typed = true;
         changed();
       }),
-      step: number("Setpoint step", { value: round125(0.02 * Math.abs(level) || 0.1), unit: yUnit }, changed),
+      step: number("Setpoint step", { value: round125(0.01 * Math.abs(level) || 0.1), unit: yUnit }, changed),
       Kc: number("Gain Kc", { value: round125((span.max - span.min) / (10 * (Math.abs(level) * 0.1 || 1))), unit: uUnit || yUnit ? `${uUnit || "1"}/${yUnit || "1"}` : "", min: 0 }, changed),
       low: number("u at least", { value: u.min ?? null, unit: uUnit, optional: true }, changed),
       high: number("u at most", { value: u.max ?? null, unit: uUnit, optional: true }, changed),
@@ -90,12 +93,12 @@ export function mount(host, bench, run, api, { window }) {
   async function propose() {
     suggest.disabled = true;
     try {
-      const { channel, time_constants: times } = await api.workOut(bench.document.id, "linearize", { ...bench.request(), near: bench.setting.start, input: input.value, output: output.value });
+      const { channel, verdict, time_constants: times } = await api.workOut(bench.model.id, "linearize", { ...bench.request(), near: bench.setting.start, input: input.value, output: output.value });
       const { A, B, C } = channel.ss;
       const direction = firstMove(A, B, C);
       if (direction === 0 || !channel.gain) throw new Error(`${input.value} does not move ${output.value}`);
       action.value = direction > 0 ? "reverse" : "direct";
-      if (sized["Kc"]) sized["Kc"].value = round125(2 / Math.abs(channel.gain));
+      if (sized["Kc"]) sized["Kc"].value = round125((verdict === "unstable" ? UNSTABLE : STABLE) / Math.abs(channel.gain));
       if (times[0]) tau_I.value = round125(times[0]);
       analysis.ask();
     } catch (error) {
@@ -112,7 +115,7 @@ export function mount(host, bench, run, api, { window }) {
     action: "Close the loop",
     figure: createFigure,
     form: [fieldRow(output.root, input.root, action.root, windup.root), place, fieldRow(tau_I, tau_D, sampling, manual, horizon), suggest],
-    send: (request) => api.workOut(bench.document.id, "control", request),
+    send: (request) => api.workOut(bench.model.id, "control", request),
     request() {
       const { setpoint, step, Kc, low, high } = sized;
       const begins = startOf();

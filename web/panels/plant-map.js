@@ -13,7 +13,7 @@ import { steadyMapPlot } from "../plots/steady_map.js";
 
 /** @param {HTMLElement} host @param {PlantBench} bench @param {Api} api */
 export function mount(host, bench, api) {
-  const signals = [...new Map([...bench.outputs, ...bench.document.states].map((each) => [each.name, each])).values()];
+  const signals = [...new Map([...bench.outputs, ...bench.model.states].map((each) => [each.name, each])).values()];
   const knobs = [...bench.inputs, ...bench.parameters];
   const again = () => analysis.again();
   const over = choice("Over", knobs.map(({ name, meaning }) => ({ value: name, label: meaning ? `${name}, ${meaning}` : name })), () => {
@@ -43,7 +43,7 @@ export function mount(host, bench, api) {
     action: "Draw the map",
     figure: createFigure,
     form: [fieldRow(over.root, of.root), place],
-    send: (request) => api.workOut(bench.document.id, "continuation", request),
+    send: (request) => api.workOut(bench.model.id, "continuation", request),
     request: () => (ends["low"]?.value == null || ends["high"]?.value == null ? null : { over: over.value, low: ends["low"].value, high: ends["high"].value }),
     draw: (answer, theme, held) =>
       steadyMapPlot(

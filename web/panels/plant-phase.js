@@ -4,6 +4,7 @@
 /** @import {PlantBench} from "../core/plant-bench.js" */
 /** @import {Values} from "../core/plant-types.js" */
 
+import { usualWindow } from "../core/plant-bench.js";
 import { h } from "../components/dom.js";
 import { choice, fieldRow, number } from "../components/form-parts.js";
 import { mountPlantAnalysis } from "../components/plant-analysis.js";
@@ -14,7 +15,7 @@ const MOST_STARTS = 20;
 
 /** @param {HTMLElement} host @param {PlantBench} bench @param {Api} api */
 export function mount(host, bench, api) {
-  const { states } = bench.document;
+  const { states } = bench.model;
   const names = states.map(({ name }) => ({ value: name, label: name }));
   /** @type {Values[]} */
   let starts = [];
@@ -28,12 +29,23 @@ export function mount(host, bench, api) {
   up.value = states[1]?.name ?? "";
   /** @type {Record<string, import("../components/number-field.js").NumberField>} */
   let from = {};
+  /** @type {Record<string, {low: import("../components/number-field.js").NumberField, high: import("../components/number-field.js").NumberField}>} */
+  let windows = {};
   const place = h("div", { class: "field-row" });
+  const bounds = h("div", { class: "field-row" });
   const add = h("button", { type: "button", class: "button", onclick: () => begin(Object.fromEntries(Object.entries(from).map(([name, field]) => [name, field.value ?? 0]))) }, "Add a trajectory");
   const clear = h("button", { type: "button", class: "button", onclick: () => { starts = []; analysis.ask(); } }, "Clear");
 
   function shape() {
     from = Object.fromEntries([across.value, up.value].map((name) => [name, number(`From ${name}`, { value: Number((bench.answer.values[name] ?? 0).toPrecision(4)), unit: bench.unit(name) }, () => {})]));
+    windows = Object.fromEntries(
+      [across.value, up.value].map((name) => {
+        const { low, high } = usualWindow(bench.answer, name);
+        const unit = bench.unit(name);
+        return [name, { low: number(`${name} at least`, { value: low, unit }, () => analysis.again()), high: number(`${name} at most`, { value: high, unit }, () => analysis.again()) }];
+      }),
+    );
+    bounds.replaceChildren(...Object.values(windows).flatMap(({ low, high }) => [low, high]));
     place.replaceChildren(...Object.values(from), add, clear);
   }
 
@@ -49,9 +61,9 @@ export function mount(host, bench, api) {
     help: "Arrows show where the plant goes from each pair of states. On the dashed line the state across stands still, on the dotted line the state up does; where they cross is a steady state, filled where it is stable. Click in the plot, or type a start, to follow the plant from there.",
     action: "Draw the phase plane",
     figure: createFigure,
-    form: [fieldRow(across.root, up.root), place],
-    send: (request) => api.workOut(bench.document.id, "phase-plane", request),
-    request: () => (across.value === up.value ? null : { horizontal: across.value, vertical: up.value, starts }),
+    form: [fieldRow(across.root, up.root), bounds, place],
+    send: (request) => api.workOut(bench.model.id, "phase-plane", request),
+    request: () => (across.value === up.value ? null : { horizontal: across.value, vertical: up.value, starts, ranges: Object.fromEntries(Object.entries(windows).map(([name, { low, high }]) => [name, [low.value, high.value]])) }),
     draw: (answer, theme) => phasePlanePlot(answer, theme),
     table: ({ trajectories, horizontal, vertical }) => ({
       header: ["trajectory", `t [${bench.timeUnit}]`, horizontal.name, vertical.name],

@@ -17,7 +17,7 @@ const STEPS = 1000;
  * @param {{speeds: number[]}} options
  */
 export function mount(host, bench, run, { speeds }) {
-  const { document: model, answer, timeUnit } = bench;
+  const { model, answer, timeUnit } = bench;
   const signals = [...bench.parameters, ...(model.variables ?? []), ...bench.outputs, ...bench.inputs, ...model.states];
   const drawing = document.createElement("plant-schematic");
   const figures = h("dl", { class: "plant-figures" });

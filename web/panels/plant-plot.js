@@ -26,7 +26,7 @@ export function mount(host, bench, run, options) {
   const isOutput = new Set(bench.outputs.map(({ name }) => name));
   const curves = [
     ...bench.outputs.map(({ name }, i) => ({ key: `outputs.${name}`, name, signal: COLOURS[i % COLOURS.length] ?? "y", on: i < FIRST_OUTPUTS })),
-    ...bench.document.states.filter(({ name }) => !isOutput.has(name)).map(({ name }, i) => ({ key: `states.${name}`, name, signal: COLOURS[(i + 1) % COLOURS.length] ?? "y", on: false })),
+    ...bench.model.states.filter(({ name }) => !isOutput.has(name)).map(({ name }, i) => ({ key: `states.${name}`, name, signal: COLOURS[(i + 1) % COLOURS.length] ?? "y", on: false })),
     ...bench.inputs.map(({ name }, i) => ({ key: `inputs.${name}`, name, signal: "u", on: i === 0 })),
   ];
   // Curves of a column's hundred states are no legend.

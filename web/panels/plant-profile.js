@@ -21,7 +21,7 @@ const EVERY = 100;
  * @returns {{frame: (now: number) => void, refresh: () => void} | null}  null where no states stand in a row
  */
 export function mount(host, bench, run) {
-  const profiles = profilesOf(bench.document.states);
+  const profiles = profilesOf(bench.model.states);
   const [first] = profiles;
   if (!first) return null;
   let profile = first;

@@ -15,16 +15,16 @@ const MOST = 8;
 
 /** @param {HTMLElement} host @param {PlantBench} bench @param {Api} api */
 export function mount(host, bench, api) {
-  const states = bench.document.states.slice(0, MOST);
+  const states = bench.model.states.slice(0, MOST);
   return mountPlantAnalysis(host, bench, {
     id: "plant-steady",
     title: "Steady states",
     help: "Where nothing changes: f(x, u) = 0 for the inputs and parameters as they are set. Newton's method starts from many places; the eigenvalues of the linear model there say whether the plant returns after a push.",
     action: "Find the steady states",
     figure: null,
-    send: (request) => api.workOut(bench.document.id, "steady-states", request),
+    send: (request) => api.workOut(bench.model.id, "steady-states", request),
     request: () => ({}),
-    words: (answer) => [answer.steady_states.length > 0 ? steadyTable(answer.steady_states) : h("p", {}, "There is no steady state in this range."), h("p", { class: "field-hint" }, `${answer.converged} of ${answer.starts} starts ended at a steady state. ${sentence(answer.remark)}`)],
+    words: (answer) => [answer.steady_states.length > 0 ? steadyTable(answer.steady_states) : h("p", {}, "There is no steady state in this range."), h("p", { class: "field-hint" }, sentence(answer.remark))],
     table: (answer) => ({
       header: [...states.map(({ name }) => name), "verdict", "kind", "eigenvalues"],
       rows: answer.steady_states.map((/** @type {SteadyState} */ { x, verdict, kind, eigenvalues }) => [...states.map(({ name }) => x[name] ?? null), verdict, kind, eigenvalues.map(([re, im]) => formatComplex([re, im])).join("; ")]),

@@ -17,6 +17,10 @@ export function linearStepPlot({ t, linear, nonlinear, output, unit, timeUnit },
   /** @param {string} what @param {(number | null)[]} y @param {object} line @returns {Trace} */
   const curve = (what, y, line) => ({ type: "scatter", mode: "lines", name: what, x: t, y, line, hovertemplate: `${what}: ${name} = %{y:.5~g} at %{x:.4~g} ${escapePlotly(timeUnit)}<extra></extra>` });
   const traces = [curve("plant", nonlinear, { color: theme.signal["y"], width: 2.5 }), curve("linear model", linear, { color: theme.signal["u"], width: 2, dash: "dash" })];
-  const ranges = { xaxis: /** @type {[number, number]} */ ([t[0] ?? 0, t.at(-1) ?? 1]), yaxis: holdRange(held, "yaxis", ...extent(linear, nonlinear)) };
+  // An unstable linear model runs away for ever; the plant does not: what the plant does is to be seen.
+  const [low, high] = extent(nonlinear);
+  const room = 1.5 * (high - low || Math.abs(high) || 1);
+  const [least, most] = extent(linear, nonlinear);
+  const ranges = { xaxis: /** @type {[number, number]} */ ([t[0] ?? 0, t.at(-1) ?? 1]), yaxis: holdRange(held, "yaxis", Math.max(least, low - room), Math.min(most, high + room)) };
   return { traces, ranges, layout: { ...baseLayout(theme), margin: { l: 66, r: 14, t: 8, b: 40 }, xaxis: axis(theme, `time [${escapePlotly(timeUnit)}]`, ranges.xaxis, { zeroline: false }), yaxis: axis(theme, escapePlotly(unit ? `${output} [${unit}]` : output), ranges.yaxis, { zeroline: false }) } };
 }

@@ -23,5 +23,5 @@ export function profilePlot({ index, now, first, stem, unit }, theme, held) {
   const fits = old !== undefined && low >= old[0] && high <= old[1];
   /** @type {{xaxis: Range, yaxis: Range}} */
   const ranges = { xaxis: fits ? old : holdRange({ ranges: {}, moving: false }, "xaxis", low, high), yaxis: [(index[0] ?? 1) - 0.5, (index.at(-1) ?? 1) + 0.5] };
-  return { traces, ranges, layout: { ...baseLayout(theme), xaxis: axis(theme, escapePlotly(unit ? `${stem} [${unit}]` : stem), ranges.xaxis, { zeroline: false }), yaxis: axis(theme, "number, from the bottom", ranges.yaxis, { zeroline: false }) } };
+  return { traces, ranges, layout: { ...baseLayout(theme), xaxis: axis(theme, escapePlotly(unit ? `${stem} [${unit}]` : stem), ranges.xaxis, { zeroline: false }), yaxis: axis(theme, "number", ranges.yaxis, { zeroline: false }) } };
 }
