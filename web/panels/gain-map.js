@@ -144,7 +144,7 @@ export function mount(host, store, api) {
         return gainMapPlot({ map: found.map, marks, tradeOff: found.tradeOff, optimum: found.optimum, timeUnit: unit }, theme);
       },
       legend: () => [
-        { signal: "now", label: "now", name: "present settings: drag them", glyph: "■" },
+        { signal: "pole", label: "now", name: "present settings: drag them", glyph: "■" },
         { signal: "limit", label: "limit", name: "exact limit of stability" },
         { signal: "contour", label: "Ms", name: "settings of the same Ms", dash: "dash" },
         { signal: "y", label: "IAE", name: "settings of the same IAE" },
