@@ -127,11 +127,15 @@ export function createPanelFrame(host, { id, title, help, figure: createFigure, 
   }
 }
 
+/** Symbols are set in italics, words are not. */
+const WORD = /[a-z]{4,}/;
+
 /** @param {LegendItem} item @returns {HTMLElement} */
 function legendItem({ signal, label, name, dash, glyph, on = true, toggle }) {
   const swatch = glyph ? h("span", { class: "glyph", "aria-hidden": "true" }, glyph) : h("span", { class: `swatch ${dash ?? "solid"}`, "aria-hidden": "true" });
   swatch.style.setProperty("--swatch", `var(--signal-${signal})`);
-  const words = [swatch, h("span", { class: glyph ? "" : "legend-label" }, label)];
+  const written = glyph ? "" : WORD.test(label) ? "legend-label word" : "legend-label";
+  const words = [swatch, h("span", { class: written }, label)];
   if (!toggle) return h("li", { title: name }, ...words, h("span", { class: "visually-hidden" }, `: ${name}`));
   return h("li", {}, h("button", { type: "button", class: "legend-toggle", "aria-pressed": String(on), title: name, "aria-label": `${label}: ${name}`, onclick: toggle }, ...words));
 }

@@ -1,6 +1,6 @@
 /** What the analyses are asked beside the loop: how each starts, and how it stands in an address. */
 
-/** @import {AnalysesView, ResponseView} from "./types.js" */
+/** @import {AnalysesView, CompareView, ControllerType, ResponseView} from "./types.js" */
 
 import { INPUTS, inputFromQuery, inputToQuery, startingInput, TRANSFORMS } from "./inputs.js";
 import { listText, parseList } from "./lists.js";
@@ -8,6 +8,11 @@ import { listText, parseList } from "./lists.js";
 const SUBJECTS = new Set(["plant", "open_loop", "closed_loop"]);
 const SUMS = new Set(["superposition", "convolution"]);
 export const MOST_SLICES = 500;
+export const MOST_RULES = 6;
+/** How wrong a model may be, in per cent, and how far Ms may be let go: as the server has them. */
+export const SPREAD = { min: 1, max: 90 };
+export const MS_LIMIT = { min: 1.05, max: 4 };
+const RULE = /^([a-z_0-9]+)\.(P|PI|PD|PID)$/;
 
 /** @returns {AnalysesView} */
 export function startingAnalyses() {
@@ -17,6 +22,8 @@ export function startingAnalyses() {
     polynomial: null,
     model_type: "FOPDT",
     cancel_tolerance: 1e-8,
+    compare: { rules: ["ziegler_nichols", "amigo", "simc"].map((rule) => ({ rule, type: "PI" })), spread_pct: null, true_plant: "" },
+    Ms_limit: 1.6,
   };
 }
 
@@ -26,7 +33,7 @@ function same(a, b) {
 }
 
 /** Only what is not as it starts. @param {URLSearchParams} query @param {AnalysesView} analyses */
-export function analysesToQuery(query, { response, laplace, polynomial, model_type, cancel_tolerance }) {
+export function analysesToQuery(query, { response, laplace, polynomial, model_type, cancel_tolerance, compare, Ms_limit }) {
   const start = startingAnalyses();
   if (response.of !== start.response.of) query.set("response.of", response.of);
   if (!same(response.input, start.response.input)) inputToQuery(query, "response", response.input);
@@ -40,6 +47,20 @@ export function analysesToQuery(query, { response, laplace, polynomial, model_ty
   if (polynomial) query.set("routh.polynomial", listText(polynomial, ","));
   if (model_type !== start.model_type) query.set("model_type", model_type);
   if (cancel_tolerance !== start.cancel_tolerance) query.set("cancel_tolerance", String(cancel_tolerance));
+  if (!same(compare.rules, start.compare.rules)) query.set("compare.rules", compare.rules.map(({ rule, type }) => `${rule}.${type}`).join(","));
+  if (compare.spread_pct !== null) query.set("compare.spread_pct", String(compare.spread_pct));
+  if (compare.true_plant !== "") query.set("compare.true_plant", compare.true_plant);
+  if (Ms_limit !== start.Ms_limit) query.set("Ms_limit", String(Ms_limit));
+}
+
+/** @param {string} text @returns {CompareView["rules"]} */
+function rulesFrom(text) {
+  return text
+    .split(",")
+    .map((word) => RULE.exec(word))
+    .filter((found) => found !== null)
+    .slice(0, MOST_RULES)
+    .map(([, rule = "", type]) => ({ rule, type: /** @type {ControllerType} */ (type) }));
 }
 
 /** @param {URLSearchParams} query @returns {AnalysesView} */
@@ -54,6 +75,10 @@ export function analysesFromQuery(query) {
   const sum = query.get("response.sum") ?? "";
   const [slices] = list("response.slices") ?? [];
   const [tolerance] = list("cancel_tolerance") ?? [];
+  const [spread] = list("compare.spread_pct") ?? [];
+  const [limit] = list("Ms_limit") ?? [];
+  const within = (/** @type {number | undefined} */ value, /** @type {{min: number, max: number}} */ { min, max }) => value !== undefined && value >= min && value <= max;
+  const rules = query.get("compare.rules");
   return {
     response: {
       of: SUBJECTS.has(subject) ? /** @type {ResponseView["of"]} */ (subject) : start.response.of,
@@ -69,5 +94,11 @@ export function analysesFromQuery(query) {
     polynomial: list("routh.polynomial"),
     model_type: query.get("model_type") === "SOPDT" ? "SOPDT" : "FOPDT",
     cancel_tolerance: tolerance !== undefined && tolerance >= 0 && tolerance <= 0.1 ? tolerance : start.cancel_tolerance,
+    compare: {
+      rules: rules === null ? start.compare.rules : rulesFrom(rules),
+      spread_pct: within(spread, SPREAD) ? (spread ?? null) : null,
+      true_plant: query.get("compare.true_plant")?.slice(0, 500) ?? "",
+    },
+    Ms_limit: within(limit, MS_LIMIT) ? (limit ?? start.Ms_limit) : start.Ms_limit,
   };
 }

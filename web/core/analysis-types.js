@@ -1,6 +1,6 @@
 /** Answers of the analysis routes, as far as the pages read them. This file holds types only and runs nothing. */
 
-/** @import {Complex, Numbers} from "./types.js" */
+/** @import {Complex, ControllerType, Numbers} from "./types.js" */
 
 /** @typedef {{text: string, latex: string, mathml: string | null}} Formula */
 /** @typedef {Record<string, string>} Reasons */
@@ -139,6 +139,53 @@
  * @property {Numbers | null} t
  * @property {Numbers | null} y
  * @property {LowOrderModel[]} models
+ */
+
+/** @typedef {{id: string, name: string, family: string, types: ControllerType[]}} RuleEntry */
+/** @typedef {{Kc: number, tau_I: number | null, tau_D: number | null, alpha: number}} Settings */
+/** @typedef {Record<string, any> & {reasons: Reasons}} Figures */
+/** @typedef {{t: Numbers, y: Numbers, u: Numbers, truncated_at: number | null}} ComparedCurve */
+/** @typedef {{K: number, tau: number, theta: number, Ms: number | null, load_IAE: number | null}} SpreadCase  factors of gain, time constants and dead time */
+
+/**
+ * @typedef {object} Spread
+ * @property {number} spread_pct
+ * @property {Numbers} t
+ * @property {{low: Numbers, high: Numbers} | null} setpoint
+ * @property {{low: Numbers, high: Numbers} | null} load
+ * @property {number} cases
+ * @property {SpreadCase[]} unstable
+ * @property {SpreadCase | null} worst_Ms
+ * @property {SpreadCase | null} worst_IAE
+ */
+
+/**
+ * @typedef {object} ComparedRow
+ * @property {string} label
+ * @property {string | null} rule
+ * @property {ControllerType} type
+ * @property {boolean} valid
+ * @property {string | null} reason
+ * @property {Settings | null} controller
+ * @property {boolean | null} closed_loop_stable
+ * @property {Figures | null} margins
+ * @property {Figures | null} setpoint
+ * @property {Figures | null} load
+ * @property {{setpoint: ComparedCurve, load: ComparedCurve} | null} responses
+ * @property {Spread | null} sensitivity
+ */
+
+/** @typedef {{horizon: number, rows: ComparedRow[]}} CompareAnswer */
+/** @typedef {{controller: Settings, value: number | null, Ms: number, active: string[]}} Optimum */
+/** @typedef {{Ms_limit: number, optimum: Optimum | null, reason: string | null}} TradeOffPoint */
+
+/**
+ * @typedef {object} GainMapAnswer
+ * @property {number[]} Kc
+ * @property {number[]} tau_I
+ * @property {(number | null)[][]} Ms  one list per tau_I; null where the loop is not stable
+ * @property {(number | null)[][]} value
+ * @property {{Kc: (number | null)[], tau_I: (number | null)[]}} boundary
  */
 
 export {};

@@ -69,7 +69,9 @@ export function createApi({ base = "/api/v1", fetch = globalThis.fetch.bind(glob
     rootLocus: (request) => call("/root-locus", request),
     /** @param {{plant?: System, model?: object, ultimate?: object, rules?: string[], types?: string[]}} request @returns {Promise<TuneAnswer>} */
     tune: (request) => call("/tune", request),
-    /** One analysis. @param {"response" | "laplace" | "routh" | "stability" | "state-space" | "approximate"} route @param {object} request @returns {Promise<any>} */
+    /** @returns {Promise<{rules: import("./analysis-types.js").RuleEntry[]}>} */
+    rules: () => call("/tune/rules"),
+    /** One analysis. @param {"response" | "laplace" | "routh" | "stability" | "state-space" | "approximate" | "compare" | "gain-map" | "tune/optimal" | "tune/trade-off"} route @param {object} request @returns {Promise<any>} */
     analyse: async (route, request) => decodeArrays(await call(`/${route}`, request)),
     /** @returns {Promise<{plants: import("./plant-types.js").PlantSummary[]}>} */
     plants: () => call("/plants"),

@@ -48,7 +48,7 @@ export function fromParallel(controller, change) {
 }
 
 /**
- * @param {TuneSetting} setting
+ * @param {Pick<TuneSetting, "type" | "Kc" | "tau_I" | "tau_D" | "alpha">} setting
  * @param {ControllerState} controller
  * @returns {ControllerState}
  */

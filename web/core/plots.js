@@ -19,6 +19,8 @@ export const ANALYSES = [
   { id: "stability", label: "Stability" },
   { id: "state_space", label: "State space" },
   { id: "low_order", label: "Low order" },
+  { id: "compare", label: "Compare" },
+  { id: "gain_map", label: "Gain map" },
 ];
 
 export const VIEW_IDS = [...PLOTS, ...ANALYSES].map(({ id }) => id);

@@ -49,6 +49,16 @@
 
 /** @typedef {{a: number[], b: number[], initial: number[]}} LinearOde */
 
+/** @typedef {{rule: string, type: ControllerType}} RuleChoice */
+
+/**
+ * What is compared with the present settings, and on what.
+ * @typedef {object} CompareView
+ * @property {RuleChoice[]} rules
+ * @property {number | null} spread_pct  how wrong the model may be, either way
+ * @property {string} true_plant  what the loops are closed around; empty for the plant itself
+ */
+
 /**
  * What the analyses are asked beside the loop.
  * @typedef {object} AnalysesView
@@ -57,6 +67,8 @@
  * @property {number[] | null} polynomial  of the Routh array; null takes the loop's
  * @property {"FOPDT" | "SOPDT"} model_type  which low-order models are drawn
  * @property {number} cancel_tolerance  up to this distance a zero cancels a pole
+ * @property {CompareView} compare
+ * @property {number} Ms_limit  what the optimal settings may reach
  */
 
 /**

@@ -14,7 +14,9 @@ import "../components/site-header.js";
 import { toast } from "../components/status-toast.js";
 import * as actionsBar from "../panels/actions-bar.js";
 import * as bode from "../panels/bode.js";
+import * as compare from "../panels/compare.js";
 import * as controllerCard from "../panels/controller-card.js";
+import * as gainMap from "../panels/gain-map.js";
 import * as instrumentsCard from "../panels/instruments-card.js";
 import * as laplace from "../panels/laplace.js";
 import * as loopDiagram from "../panels/loop-diagram.js";
@@ -52,6 +54,8 @@ const STAGE = {
   stability: stability.mount,
   state_space: stateSpace.mount,
   low_order: lowOrder.mount,
+  compare: compare.mount,
+  gain_map: gainMap.mount,
 };
 
 const NARROW = matchMedia("(max-width: 63.99rem)");

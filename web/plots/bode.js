@@ -72,7 +72,7 @@ export function bodePlot({ bode, margins, curves, sketch, ghosts, timeUnit }, th
       ...baseLayout(theme),
       xaxis: axis(theme, `ω [rad/${unit}]`, ranges.xaxis, { type: "log", anchor: "y2", dtick: 1, zeroline: false }),
       yaxis: axis(theme, "|L| [dB]", ranges.yaxis, { domain: [0.54, 1], dtick: magSpan > 100 ? 40 : 20, zeroline: false }),
-      yaxis2: axis(theme, "arg L [°]", ranges.yaxis2, { domain: [0, 0.46], dtick: phaseSpan > 270 ? 90 : 45, zeroline: false }),
+      yaxis2: axis(theme, "arg L [°]", ranges.yaxis2, { domain: [0, 0.46], dtick: phaseSpan > 270 ? 90 : phaseSpan > 90 ? 45 : 15, zeroline: false }),
     },
   };
 }

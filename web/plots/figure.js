@@ -8,7 +8,7 @@
 
 /** @import {Figure, Ranges, Trace} from "../core/types.js" */
 
-import { linePath, toPixel } from "./path.js";
+import { linePath, toPixel, toValue } from "./path.js";
 
 const REST_MS = 120;
 /** A server that answers slowly is no rest: this many of its last intervals must pass. */
@@ -141,6 +141,21 @@ export function createFigure(element) {
     /** Tells the ranges shown whenever the student has zoomed, moved or reset them. @param {(ranges: Ranges) => void} listener */
     onZoom(listener) {
       zoomListeners.add(listener);
+    },
+    /** Where a point of the plane lies in the element, in pixels; null before the first drawing. @param {{x: number, y: number}} value */
+    pixelsOf({ x, y }) {
+      const full = /** @type {any} */ (element)._fullLayout;
+      if (!drawn || !full?.xaxis?._m) return null;
+      const held = (/** @type {any} */ plotAxis, /** @type {number} */ pixel) => plotAxis._offset + Math.min(plotAxis._length, Math.max(0, pixel));
+      return { x: held(full.xaxis, toPixel(pixelAxis(full, "x"), x)), y: held(full.yaxis, toPixel(pixelAxis(full, "y"), y)) };
+    },
+    /** The point of the plane at these pixels of the element, held inside of the axes. @param {{x: number, y: number}} pixels */
+    valuesAt({ x, y }) {
+      const full = /** @type {any} */ (element)._fullLayout;
+      if (!drawn || !full?.xaxis?._m) return null;
+      const value = (/** @type {any} */ plotAxis, /** @type {string} */ name, /** @type {number} */ pixel) =>
+        toValue(pixelAxis(full, name), Math.min(plotAxis._length, Math.max(0, pixel - plotAxis._offset)));
+      return { x: value(full.xaxis, "x", x), y: value(full.yaxis, "y", y) };
     },
     /** Takes back the student's zoom. */
     resetZoom() {

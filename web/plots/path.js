@@ -16,6 +16,12 @@ export function toPixel({ slope, start, log }, value) {
   return start + slope * (log ? Math.log10(value) : value);
 }
 
+/** The other way. @param {PixelAxis} axis @param {number} pixel */
+export function toValue({ slope, start, log }, pixel) {
+  const value = (pixel - start) / slope;
+  return log ? 10 ** value : value;
+}
+
 /** @param {number} value */
 function short(value) {
   return Math.round(value * 100) / 100;

@@ -7,6 +7,18 @@ import { axis, baseLayout, holdRange } from "./axes.js";
 
 /** Poles that dead time adds lie ever farther out: the window is for the slowest of them. */
 const SHOWN_WITH_DEAD_TIME = 6;
+/** Nor is it for those this many times as fast as all before them: the slow ones would lie in one point. */
+const FASTER = 20;
+
+/** @param {Complex[]} poles  rightmost first */
+function slowestOf(poles) {
+  const size = poles.slice(0, SHOWN_WITH_DEAD_TIME).map(([x, y]) => Math.hypot(x, y));
+  const fast = size.findIndex((s, i) => {
+    const before = Math.max(0, ...size.slice(0, i));
+    return before > 0 && s > FASTER * before;
+  });
+  return poles.slice(0, fast < 0 ? SHOWN_WITH_DEAD_TIME : fast);
+}
 
 /**
  * A window with the imaginary axis in it.
@@ -29,7 +41,7 @@ export function windowOf(poles) {
  * @returns {Figure}
  */
 export function polesPlot({ plant, loop, complete }, theme, held) {
-  const slowest = complete ? loop : loop.slice(0, SHOWN_WITH_DEAD_TIME);
+  const slowest = complete ? loop : slowestOf(loop);
   const { re, im } = windowOf([...plant, ...slowest]);
   const ranges = { xaxis: holdRange(held, "xaxis", ...re), yaxis: holdRange(held, "yaxis", ...im) };
   const far = 10 * Math.max(...[...ranges.xaxis, ...ranges.yaxis].map(Math.abs));

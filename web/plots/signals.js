@@ -38,6 +38,14 @@ export const SIGNALS = {
   half_rule: { label: "half rule", name: "half rule", dash: "dash", width: 2 },
   taylor: { label: "Taylor", name: "Taylor", dash: "dot", width: 2 },
   two_point: { label: "two points", name: "two points of the step response", dash: "dashdot", width: 2 },
+  now: { label: "now", name: "present settings", dash: "solid", width: 3 },
+  optimal: { label: "optimal", name: "best settings within the limit of Ms", dash: "solid", width: 2 },
+  case_1: { label: "rule 1", name: "first rule", dash: "dash", width: 2 },
+  case_2: { label: "rule 2", name: "second rule", dash: "dot", width: 2.25 },
+  case_3: { label: "rule 3", name: "third rule", dash: "dashdot", width: 2 },
+  case_4: { label: "rule 4", name: "fourth rule", dash: "longdash", width: 2 },
+  case_5: { label: "rule 5", name: "fifth rule", dash: "dash", width: 2 },
+  case_6: { label: "rule 6", name: "sixth rule", dash: "dot", width: 2.25 },
   least_squares: { label: "least squares", name: "least squares", dash: "longdash", width: 2 },
 };
 
