@@ -2,4 +2,6 @@
 
 from looplab.cli import app
 
-app(prog_name="looplab")
+# worker processes read this file again
+if __name__ == "__main__":
+    app(prog_name="looplab")

@@ -1,4 +1,4 @@
-"""The command line: `looplab serve | labs | bench`."""
+"""The command line: `looplab serve | labs | models | bench`."""
 
 import os
 import socket
@@ -14,6 +14,7 @@ import typer
 
 from looplab import __version__
 from looplab.labs.commands import app as labs_app
+from looplab.schemas.commands import app as models_app
 
 
 class LogLevel(StrEnum):
@@ -34,6 +35,7 @@ app = typer.Typer(
     pretty_exceptions_show_locals=False,
 )
 app.add_typer(labs_app)
+app.add_typer(models_app)
 
 
 def _show_version(wanted: bool) -> None:

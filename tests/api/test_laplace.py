@@ -1,5 +1,6 @@
 """POST /laplace and POST /approximate: the notes' examples, degenerate cases with reasons, refusals with a field."""
 
+import math
 from typing import Any
 
 import pytest
@@ -45,6 +46,9 @@ def test_the_example_of_the_notes(laplace: Any) -> None:
     assert found["initial_value"] == 0
     assert found["final_value"] is None
     assert found["reasons"]["final_value"].startswith("no final value: pole at ±j")
+    beside = found["response"]
+    assert beside["simulated_y"] == pytest.approx([1 - math.cos(t) for t in beside["simulated_t"]], abs=1e-9)
+    assert len(beside["simulated_t"]) > 100
     # What the theorem would claim if its condition were not looked at.
     assert found["formula"]["final_value"] == 1
     assert found["accuracy"]["simulation_difference"] < 1e-9

@@ -1,12 +1,13 @@
 """POST /loop: golden values to the printed digits, keys, and the shape of the answer."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
 
 from looplab.api.answers.loop import LoopAnswer
+from looplab.api.routes.loop import ON_REQUEST, PanelName
 
 Ask = Callable[..., dict[str, Any]]
 
@@ -109,7 +110,7 @@ SETTINGS = [
 @pytest.mark.parametrize("arrays", ["list", "f4"])
 def test_every_answer_has_the_described_shape(post: Any, plant: str, settings: dict[str, Any], arrays: str) -> None:
     loop = {"plant": {"type": "expr", "text": plant}, "controller": {"type": "pid", **settings}}
-    answer = post("/loop", {"loop": loop, "arrays": arrays})
+    answer = post("/loop", {"loop": loop, "want": get_args(PanelName), "arrays": arrays})
     assert answer.status_code == 200, answer.text
     parsed = LoopAnswer.model_validate_json(answer.content)
     panels = parsed.panels
@@ -138,6 +139,30 @@ def test_an_unchanged_panel_is_left_out(post: Any) -> None:
     same = ask(3.6, keys)
     assert same["panels"] == {}
     assert set(same["unchanged"]) == set(keys)
+
+
+def test_what_explains_more_closely_comes_on_request(loop_of: Ask) -> None:
+    assert set(loop_of(ZN, ZN_PI)) == set(get_args(PanelName)) - set(ON_REQUEST)
+    panels = loop_of(ZN, ZN_PI, want=list(ON_REQUEST))
+    assert set(panels) == set(ON_REQUEST)
+    integral, lags = panels["asymptotes"]["corners"]
+    assert (integral["kind"], integral["slope_change"]) == ("zero", 1)
+    assert (lags["s"], lags["multiplicity"], lags["slope_change"]) == ([-1, 0], 3, -3)
+    # K -> -K: the asymptotes lie between those of K > 0, 0 and +-120 deg.
+    assert panels["root_locus_negative"]["asymptotes"]["angles_deg"] == [0, 120, 240]
+
+
+def test_the_gang_of_six_with_a_setpoint_weight(loop_of: Ask) -> None:
+    """1/(s+1) with Kc = 2, beta = 1/2: C + F = 1, so r to y is 1/(s+3) and T 2/(s+3)."""
+    settings = {"Kc": 2, "beta": 0.5}
+    panels = loop_of("1/(s+1)", settings, want=["sensitivity", "gang_steps"], omega=[0.01, 100], horizon=3)
+    gang, steps = panels["sensitivity"], panels["gang_steps"]
+    omega = np.array(gang["omega"])
+    assert gang["feedforward"] == steps["feedforward"] == -1
+    expected = -20 * np.log10(np.hypot(3, omega))
+    assert np.abs(gang["TF_dB"] - expected).max() < 1e-12
+    assert np.abs(gang["T_dB"] - (expected + 20 * np.log10(2))).max() < 1e-12
+    assert np.abs(np.array(steps["TF"]) - (1 - np.exp(-3 * np.array(steps["t"]))) / 3).max() < 1e-13
 
 
 def test_f4_arrays_are_the_numbers(loop_of: Ask) -> None:

@@ -33,7 +33,7 @@ def test_every_route_says_what_it_is_for(path: str, method: str) -> None:
 @pytest.mark.parametrize(("path", "method"), [o for o in OPERATIONS if o[1] == "post"])
 def test_every_example_works(client: TestClient, path: str, method: str) -> None:
     for name, example in examples(DESCRIPTION["paths"][path][method]).items():
-        address = path.replace("{lab_id}", "ziegler-nichols-third-order")
+        address = path.replace("{lab_id}", "ziegler-nichols-third-order").replace("{plant_id}", "cstr")
         response = client.post(address, json=example)
         assert response.status_code == 200, (name, response.text)
 

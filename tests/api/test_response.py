@@ -47,6 +47,40 @@ def test_a_staircase_and_its_steps(post: Any) -> None:
     assert found["convolution"]["error"] < 0.3
 
 
+def loop_of(plant: str, **settings: Any) -> dict[str, Any]:
+    return {"plant": {"type": "expr", "text": plant}, "controller": {"type": "pid", **settings}}
+
+
+def test_a_loop_from_its_setpoint_and_opened(post: Any) -> None:
+    """3/s under unit feedback is 3/(s+3): y = t - (1 - exp(-3t))/3 behind a ramp; opened, y = 3 t^2/2."""
+    request = {"loop": loop_of("1/s", Kc=3), "input": {"type": "ramp"}, "horizon": 4, "points": 41}
+    closed = post("/response", request).json()
+    t = np.array(closed["t"])
+    assert np.allclose(closed["y"], t + np.expm1(-3 * t) / 3, atol=1e-13)
+    assert closed["system"]["order"] == 1
+    opened = post("/response", {**request, "of": "open_loop"}).json()
+    assert np.allclose(opened["y"], 1.5 * t**2, atol=1e-12)
+
+
+def test_a_loop_with_dead_time(post: Any) -> None:
+    """exp(-s)/s under Kc = 0.5: from a step y = 0.5 (t-1) - 0.5^2 (t-2)^2/2 + ..., each term from its t on."""
+    request = {"loop": loop_of("exp(-s)/s", Kc=0.5), "horizon": 3, "points": 31}
+    found = post("/response", {**request, "input": STEP, "want": ["states"]}).json()
+    t = np.array(found["t"])
+    first, second = np.maximum(t - 1, 0), np.maximum(t - 2, 0)
+    assert np.allclose(found["y"], 0.5 * first - 0.125 * second**2, atol=1e-12)
+    assert found["final_value"] == 1
+    assert found["system"]["theta"] == 1 and found["system"]["mathml"].startswith("<math")
+    assert found["states"] is None and "on its way" in found["reasons"]["states"]
+    pulse = {"type": "pulse", "width": 0.77, "start": 0.33}
+    sums = post("/response", {**request, "input": pulse, "want": ["superposition", "convolution"]}).json()
+    assert sums["superposition"]["error"] < 1e-12
+    assert np.allclose(sums["convolution"]["exact"], sums["y"], atol=1e-12)
+    assert sums["convolution"]["error"] < 0.05
+    ramp = post("/response", {**request, "input": {"type": "ramp"}}).json()
+    assert "does not settle" in ramp["reasons"]["final_value"]
+
+
 def test_free_response_of_a_state_space_and_of_its_equation(post: Any) -> None:
     model = {"type": "ss", "A": [[0, 1], [-2, -3]], "B": [[0], [1]], "C": [[1, 0]], "D": [[0]]}
     still = {"type": "step", "amplitude": 0}
@@ -89,6 +123,20 @@ def test_degenerate_systems_have_a_response(post: Any, system: str) -> None:
     ("request_", "path", "word"),
     [
         ({"system": {"type": "expr", "text": "s+1"}, "input": STEP}, "system", "differentiates"),
+        ({"loop": loop_of("exp(-s)/s", Kc=1), "input": STEP, "initial": {"y": [1]}}, "initial", "from rest"),
+        ({"loop": loop_of("exp(-s)/s", Kc=1, beta=0.5), "input": STEP}, "loop.controller.beta", "weight"),
+        ({"loop": loop_of("exp(-s)/s", Kc=1), "input": STEP, "horizon": 1e7}, "loop.plant.theta", "millionth"),
+        (
+            {"loop": loop_of("exp(-s)", Kc=0.5), "input": {"type": "impulse"}},
+            "input",
+            "again and again",
+        ),
+        (
+            {"loop": {**loop_of("exp(-s)/s"), "controller": {"type": "expr", "text": "exp(-s)"}}, "input": STEP},
+            "loop.controller",
+            "dead time of its own",
+        ),
+        ({"loop": loop_of("1/s", Kc=1), "system": {"type": "expr", "text": "1"}, "input": STEP}, "", "either"),
         ({"system": {"type": "expr", "text": "1/(s+1)"}, "input": STEP, "initial": {"x": [1, 2]}}, "initial.x", "1 s"),
         ({"system": {"type": "expr", "text": "1/(s+1)"}, "input": STEP, "initial": {"y": [1, 2]}}, "initial.y", "ord"),
         ({"system": {"type": "expr", "text": "1/(s+1)"}, "input": STEP, "initial": {}}, "initial", "either"),

@@ -38,6 +38,9 @@ def test_an_equation_with_a_hidden_mode(post: Any) -> None:
     assert channel["minimal"]["text"] == "1/(s + 2)"
     assert [c["pole"][0] for c in channel["cancelled"]] == [pytest.approx(-1)]
     assert channel["cancel_tolerance"] == 1e-8
+    smallest = found["minimal_realization"]
+    assert smallest["A"] == [[pytest.approx(-2)]] and smallest["D"] == [[0]]
+    assert smallest["C"][0][0] * smallest["B"][0][0] == pytest.approx(1)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from playwright.sync_api import Page
 
 from workbench import open_workbench, settled
 
-PLOTS = ["step", "bode", "nyquist", "root_locus", "sensitivity"]
+PLOTS = ["step", "bode", "nyquist", "nichols", "root_locus", "sensitivity"]
 LOOPS = {
     "rational": "plant=1/(s%2B1)^3&type=PI&Kc=1.4&tau_I=2.2",
     "dead time": "plant=fopdt&K=1&tau=0.5&theta=0.1&type=PID&Kc=2.2&tau_I=0.5&tau_D=0.05",

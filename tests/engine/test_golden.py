@@ -3,9 +3,18 @@
 import numpy as np
 import pytest
 
-from looplab.engine.frequency import margins
+from looplab.engine.frequency import margins, nyquist_count
 from looplab.engine.loop import PID, FeedbackLoop, closed_loop_step, step_metrics
-from looplab.engine.stability import closed_loop_poles, closed_loop_verdict, root_locus
+from looplab.engine.response import simulate, step
+from looplab.engine.stability import (
+    closed_loop_poles,
+    closed_loop_verdict,
+    gain_ranges,
+    pi_gain_ranges,
+    root_locus,
+    routh_array,
+)
+from looplab.engine.state_space import StateSpaceModel
 from looplab.engine.systems import FOPDT, parse_transfer_function
 from looplab.engine.tuning import cohen_coon, ultimate_point, ziegler_nichols_ultimate
 from references import reference
@@ -106,6 +115,63 @@ def test_internal_stability() -> None:
     loop = FeedbackLoop(parse_transfer_function(case["plant"]), parse_transfer_function(case["controller"]))
     assert sorted(p.real for p in closed_loop_poles(loop).poles) == pytest.approx(case["poles"], rel=1e-12)
     assert not closed_loop_verdict(loop).closed_loop_stable
+
+
+def test_stable_gains_of_a_PI_controller() -> None:
+    """Every Kc > 0 from tau_I = 0.5 on, else Kc < 4/(1/tau_I - 2)."""
+    case = GOLDEN["routh_PI"]
+    P = parse_transfer_function(case["plant"])
+    for tau_I, limit in zip(case["tau_I"], case["Kc_limit"], strict=True):
+        assert limit == pytest.approx(4 / (1 / tau_I - 2), rel=1e-12)
+        (stable,) = pi_gain_ranges(P, tau_I).ranges
+        assert stable.low.K == 0
+        assert stable.high.K == pytest.approx(limit, rel=1e-11)
+        for K, changes in ((limit * (1 - 1e-9), 0), (limit * (1 + 1e-9), 2)):
+            # s^3 + 2 s^2 + (2 + Kc) s + Kc/tau_I
+            assert routh_array([1, 2, 2 + K, K / tau_I]).sign_changes == changes
+    for tau_I in (case["unlimited_from_tau_I"], 1.0, 10.0):
+        (stable,) = pi_gain_ranges(P, tau_I).ranges
+        assert (stable.low.K, stable.high.K) == (0, None)
+
+
+def test_a_loop_that_no_gain_stabilises() -> None:
+    case = GOLDEN["root_locus_never_stable"]
+    L = parse_transfer_function(case["plant"])
+    assert gain_ranges(L).ranges == ()
+    locus = root_locus(L)
+    right = np.count_nonzero(locus.branches.real > 0, axis=0)
+    assert right[1:].min() >= case["rhp_at_least"]
+    for K in np.logspace(-4, 6, 41):
+        assert nyquist_count(L * K).Z >= case["rhp_at_least"]
+
+
+def test_the_controller_that_moves_its_actuator_hard() -> None:
+    """P = 10/((s+10)(s+1)), C = 10 (s+10)(s+1)/(s (s+12)): C S = 10 (s+10)(s+1)/(s^2+12 s+100) from 10 down to 1.
+
+    Seen from a step on the measurement, u goes from -10 to -1; |C S| peaks with 12.54 at 12.85 rad/time.
+    """
+    loop = FeedbackLoop(parse_transfer_function("10/((s+10)(s+1))"), parse_transfer_function("10(s+10)(s+1)/(s(s+12))"))
+    u = closed_loop_step(loop, horizon=3.0).setpoint.u
+    assert -u[0] == pytest.approx(-10, rel=1e-12)
+    assert -u[-1] == pytest.approx(-1, abs=1e-5)
+    omega = np.linspace(10, 16, 6001)
+    CS = np.abs(loop.C.response(omega) / (1 + loop.open_loop.response(omega)))
+    assert round(CS.max(), 2) == 12.54
+    # 157 x^2 - 19800 x - 1015600 = 0 for x = omega^2; printed with its last digit cut off
+    peak = ((19800 + (19800**2 + 4 * 157 * 1015600) ** 0.5) / 314) ** 0.5
+    assert omega[CS.argmax()] == pytest.approx(peak, abs=1e-3)
+    assert int(peak * 100) == 1285
+
+
+def test_two_zeros_in_the_right_half_plane() -> None:
+    """(s^2-3s+2)/(2 (s+1)^4): up first, then an undershoot of 8.27 % at t = 2.0; settled (2 %) at 10.28."""
+    G = parse_transfer_function("(s^2-3s+2)/(2(s+1)^4)")
+    assert G.dc_gain == pytest.approx(1, rel=1e-12)
+    r = simulate(StateSpaceModel.from_transfer_function(G).channel(), step(), 20.0, 4001)
+    assert (r.y[1:20] > 0).all()
+    assert round(-100 * r.y.min(), 2) == 8.27
+    assert round(r.t[r.y.argmin()], 1) == 2.0
+    assert round(r.t[np.flatnonzero(np.abs(r.y - 1) > 0.02)[-1]], 2) == pytest.approx(10.28, abs=0.01)
 
 
 def test_inverse_response_process() -> None:

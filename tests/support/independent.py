@@ -7,6 +7,7 @@ beyond it. Steps are halved until F turns by less than 0.35 rad in each, and onc
 
 import math
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -56,6 +57,47 @@ def count_right_of(D: Function, N: Function, theta: float, radius: float, shift:
     return round((axis + arc) / (2 * math.pi))
 
 
+def count_in_box(D: Function, N: Function, theta: float, left: float, right: float, top: float) -> int:
+    """Zeros of D + N e^{-theta s} with left < Re s < right and |Im s| < top."""
+
+    def F(s: np.ndarray) -> np.ndarray:
+        # Divided by the larger term in size only: neither overflows, and the phase stays.
+        a, b = D(s), N(s)
+        grow = -theta * s.real
+        size = np.maximum(np.log(np.abs(a) + 1e-300), np.log(np.abs(b) + 1e-300) + grow)
+        return a * np.exp(-size) + b * np.exp(grow - size - 1j * theta * s.imag)
+
+    step = 0.5 / theta if theta else math.inf
+    corners = [left - 1j * top, right - 1j * top, right + 1j * top, left + 1j * top, left - 1j * top]
+    turns = 0.0
+    for a, b in pairwise(corners):
+        turns += _turn(F, lambda v, a=a, b=b: a + (b - a) * v, 0.0, 1.0, step)  # type: ignore[misc]
+    return round(turns / (2 * math.pi))
+
+
+def proved_rhp_roots(zeros: Sequence[complex], poles: Sequence[complex], gain: float) -> int | None:
+    """Roots of D + N right of the imaginary axis by inclusion discs, which hold all roots; None if one meets the axis.
+
+    Around approximate roots z_i of a polynomial p of degree n and leading coefficient a the discs of radius
+    n |p(z_i)| / |a prod(z_i - z_j)| together hold every root, each connected part as many as it has discs
+    (B. T. Smith, J. ACM 17 (1970) 661-674).
+    """
+    lead = 1.0 + (gain if len(zeros) == len(poles) else 0.0)
+    z = np.roots(np.polyadd(np.poly(poles), gain * np.atleast_1d(np.poly(zeros))))
+    D, N = from_roots(poles)(z), from_roots(zeros, gain)(z)
+    rounding = 8 * (len(zeros) + len(poles)) * np.finfo(float).eps
+    apart = z[:, None] - z
+    np.fill_diagonal(apart, 1.0)
+    with np.errstate(divide="ignore"):
+        radius = z.size * (np.abs(D + N) + rounding * (np.abs(D) + np.abs(N))) / np.abs(lead * apart.prod(axis=1))
+    return None if (np.abs(z.real) <= radius).any() else int(np.count_nonzero(z.real > 0))
+
+
+def _reach(roots: Sequence[complex], radius: float, side: int) -> float:
+    """Bound on prod |s - r| for |s| = radius: the largest (+1) or the smallest (-1) it can be."""
+    return math.prod(radius + side * abs(r) for r in roots)
+
+
 def rhp_closed_loop_poles(
     zeros: Sequence[complex], poles: Sequence[complex], gain: float, theta: float = 0.0, shift: float = 0.0
 ) -> int:
@@ -71,8 +113,9 @@ def rhp_closed_loop_poles(
             raise ValueError("infinitely many, or a root at infinity")
         radius = 20.0 * (size + 1.0) * (1 + len(poles)) / room
     else:
+        # From here on |N e^{-theta s}| < |D|.
         lift = math.exp(-theta * min(shift, 0.0))
-        radius = (
-            4.0 * (size + (abs(gain) * lift * 2.0 ** len(zeros) * 2.0**excess) ** (1.0 / excess) + abs(shift)) + 1e-3
-        )
+        radius = 2.0 * (size + abs(shift)) + 1e-3
+        while abs(gain) * lift * _reach(zeros, radius + abs(shift), 1) > 0.9 * _reach(poles, radius - abs(shift), -1):
+            radius *= 1.5
     return count_right_of(from_roots(poles), from_roots(zeros, gain), theta, radius, shift)

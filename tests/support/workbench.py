@@ -47,3 +47,24 @@ def violations(page: Page) -> list[str]:
     """What axe finds wrong with the page as it is now."""
     found = Axe().run(page).response["violations"]
     return [f"{v['id']}: {v['help']} at {[node['html'][:120] for node in v['nodes']]}" for v in found]
+
+
+def open_analyses(page: Page, *names: str, query: str = "") -> None:
+    """Opens the workbench with these analyses alone, and waits until each has its answer."""
+    page.add_init_script(COUNT_DRAWINGS)
+    page.goto(f"/workbench?show={','.join(names)}" + (f"&{query}" if query else ""))
+    for name in names:
+        expect(page.locator(f"#panel-{name} .analysis-content")).to_be_visible(timeout=20_000)
+    expect(verdict(page)).to_be_visible()
+
+
+def curve(page: Page, panel: str, name: str) -> tuple[list[float], list[float]]:
+    """x and y of a trace as Plotly was given them."""
+    plot = page.locator(f"#panel-{panel} .plot")
+    expect(plot.locator(".scatterlayer").first).to_be_attached()
+    x, y = plot.evaluate(
+        "(plot, name) => { const { x, y } = plot.data.find((trace) => trace.name === name);"
+        " return [Array.from(x), Array.from(y)]; }",
+        name,
+    )
+    return x, y

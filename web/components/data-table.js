@@ -9,12 +9,12 @@ import { h } from "./dom.js";
 const ROWS = 200;
 
 /** @param {Table} table @param {string} caption @returns {HTMLElement} */
-export function dataTable({ header, rows }, caption) {
-  const shown = thin(rows, ROWS);
-  const note = shown.length < rows.length ? `${caption}, every ${Math.round(rows.length / shown.length)}th row of ${rows.length}; the CSV file has all` : caption;
+export function dataTable({ header, rows, lead = 0 }, caption) {
+  const shown = [...rows.slice(0, lead), ...thin(rows.slice(lead), ROWS)];
+  const note = shown.length < rows.length ? `${caption}, ${shown.length} of ${rows.length} rows; the CSV file has all` : caption;
   const head = h("tr", {}, ...header.map((name) => h("th", { scope: "col" }, name)));
   const body = shown.map((row) =>
-    h("tr", {}, ...row.map((cell) => h("td", {}, typeof cell === "number" || cell === null ? formatNumber(cell, 5) : cell))),
+    h("tr", {}, ...row.map((cell) => typeof cell === "number" || cell === null ? h("td", {}, formatNumber(cell, 5)) : h("td", { class: "words" }, cell))),
   );
   return h(
     "div",

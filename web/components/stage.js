@@ -3,6 +3,7 @@
 /** @import {Api} from "../core/api.js" */
 /** @import {Store} from "../core/store.js" */
 
+import { takesRow } from "../core/plots.js";
 import { h } from "./dom.js";
 
 /** @typedef {(host: HTMLElement, store: Store, api: Api) => () => void} Mount */
@@ -36,13 +37,13 @@ export function createStage(host, store, api, plots) {
     for (const { id, mount } of plots.toReversed()) {
       if (!show.includes(id)) continue;
       if (!mounted.has(id)) {
-        const slot = h("div", { class: "slot", "data-plot": id });
+        const slot = h("div", { class: takesRow(id) ? "slot row-slot" : "slot", "data-plot": id });
         host.insertBefore(slot, next);
         mounted.set(id, { slot, dispose: mount(slot, store, api) });
       }
       next = mounted.get(id)?.slot ?? null;
     }
-    host.dataset["plots"] = String(show.filter((id) => id !== "numbers").length);
+    host.dataset["plots"] = String(show.filter((id) => !takesRow(id)).length);
   }
 
   /** @param {Event} event */

@@ -5,7 +5,11 @@
 /** @typedef {"auto" | "light" | "dark"} ThemeChoice */
 
 const STORAGE_KEY = "looplab-theme";
-const SIGNALS = ["r", "y", "u", "d", "n", "e", "L", "P", "C", "S", "PS", "CS", "T", "margin", "pole", "locus"];
+const SIGNALS = [
+  "r", "y", "y_m", "u", "d", "n", "e", "L", "P", "C", "S", "PS", "CS", "T", "CFS", "TF", "margin", "pole", "locus",
+  "locus-negative", "sketch", "infinity", "term", "sum", "simulated", "half_rule", "taylor", "two_point",
+  "least_squares",
+];
 const systemDark = matchMedia("(prefers-color-scheme: dark)");
 
 /** @returns {ThemeChoice} */

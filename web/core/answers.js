@@ -14,8 +14,8 @@ export function createAnswers() {
   const listeners = new Set();
   /** @type {Set<() => void>} */
   const wantListeners = new Set();
-  /** @type {{plant: SystemText | null, controller: SystemText | null, time_unit: string, error: any}} */
-  let about = { plant: null, controller: null, time_unit: "s", error: null };
+  /** @type {{plant: SystemText | null, controller: SystemText | null, actuator: SystemText | null, sensor: SystemText | null, time_unit: string, error: any}} */
+  let about = { plant: null, controller: null, actuator: null, sensor: null, time_unit: "s", error: null };
 
   /** @param {boolean} moving */
   function tell(moving) {
@@ -32,6 +32,12 @@ export function createAnswers() {
     get controller() {
       return about.controller;
     },
+    get actuator() {
+      return about.actuator;
+    },
+    get sensor() {
+      return about.sensor;
+    },
     get time_unit() {
       return about.time_unit;
     },
@@ -45,7 +51,8 @@ export function createAnswers() {
       // What the server neither sent nor called unchanged belongs to an older loop.
       const kept = Object.fromEntries(answer.unchanged.map((name) => [name, panels[name]]));
       panels = { ...kept, ...answer.panels };
-      about = { plant: answer.plant, controller: answer.controller, time_unit: answer.time_unit, error: null };
+      const { plant, controller, actuator, sensor, time_unit } = answer;
+      about = { plant, controller, actuator, sensor, time_unit, error: null };
       tell(moving);
     },
     /** @param {any} error */

@@ -1,6 +1,6 @@
 /** The REST client: JSON in, JSON out, and one readable error for whatever goes wrong. */
 
-/** @import {LabSummary, LoopAnswer, System, TuneAnswer} from "./types.js" */
+/** @import {LabSummary, LoopAnswer, RootLocusPanel, System, TuneAnswer} from "./types.js" */
 
 import { decodeArrays } from "./decode.js";
 
@@ -65,8 +65,12 @@ export function createApi({ base = "/api/v1", fetch = globalThis.fetch.bind(glob
   return {
     /** @param {object} request @returns {Promise<LoopAnswer>} */
     loop: async (request) => decodeArrays(await call("/loop", request)),
+    /** @param {object} request @returns {Promise<Omit<RootLocusPanel, "key">>} */
+    rootLocus: (request) => call("/root-locus", request),
     /** @param {{plant?: System, model?: object, ultimate?: object, rules?: string[], types?: string[]}} request @returns {Promise<TuneAnswer>} */
     tune: (request) => call("/tune", request),
+    /** One analysis. @param {"response" | "laplace" | "routh" | "stability" | "state-space" | "approximate"} route @param {object} request @returns {Promise<any>} */
+    analyse: async (route, request) => decodeArrays(await call(`/${route}`, request)),
     /** @returns {Promise<{labs: LabSummary[]}>} */
     labs: () => call("/labs"),
     /** @param {string} id @returns {Promise<any>} */

@@ -3,6 +3,7 @@
 /** @import {LabBench, LabSlider, Settings} from "./lab-types.js" */
 /** @import {ControllerState, ControllerType, State} from "./types.js" */
 
+import { startingAnalyses } from "./analyses.js";
 import { formatNumber } from "./format.js";
 import { hasDerivative, hasIntegral } from "./loop.js";
 import { tidy } from "./scale.js";
@@ -12,6 +13,8 @@ export function stateOf({ plant, controller, horizon, sliders }) {
   const { form, Kc, tau_I, tau_D, alpha, action } = controller;
   return {
     plant,
+    actuator: "",
+    sensor: "",
     horizon,
     controller: {
       type: typeOf(tau_I !== null, Boolean(tau_D)),
@@ -20,9 +23,10 @@ export function stateOf({ plant, controller, horizon, sliders }) {
       tau_I: tau_I ?? middle(sliders, "tau_I"),
       tau_D: tau_D ?? middle(sliders, "tau_D"),
       alpha,
+      beta: 1,
       action,
     },
-    view: { signal: "setpoint", show: [] },
+    view: { signal: "setpoint", show: [], analyses: startingAnalyses() },
   };
 }
 

@@ -14,19 +14,21 @@ export function hasDerivative(type) {
 
 /** @param {ControllerState} controller */
 export function controllerJson(controller) {
-  const { form, Kc, alpha, action } = controller;
+  const { form, Kc, alpha, beta, action } = controller;
   const tau_I = hasIntegral(controller.type) ? controller.tau_I : null;
   const tau_D = hasDerivative(controller.type) ? controller.tau_D : null;
   if (form === "parallel") {
     const { Kp, Ki, Kd } = parallelGains(controller);
-    return { type: "pid", form, Kp, Ki: tau_I === null ? 0 : Ki, Kd: tau_D === null ? 0 : Kd, alpha, action };
+    return { type: "pid", form, Kp, Ki: tau_I === null ? 0 : Ki, Kd: tau_D === null ? 0 : Kd, alpha, beta, action };
   }
-  return { type: "pid", form, Kc, tau_I, tau_D, alpha, action };
+  return { type: "pid", form, Kc, tau_I, tau_D, alpha, beta, action };
 }
 
-/** @param {Pick<State, "plant" | "controller">} state */
-export function loopOf({ plant, controller }) {
-  return { plant, controller: controllerJson(controller) };
+/** @param {Pick<State, "plant" | "controller" | "actuator" | "sensor">} state */
+export function loopOf({ plant, controller, actuator, sensor }) {
+  /** @param {string} text */
+  const typed = (text) => (text.trim() === "" ? null : { type: "expr", text });
+  return { plant, controller: controllerJson(controller), actuator: typed(actuator), sensor: typed(sensor) };
 }
 
 /** @param {Pick<ControllerState, "Kc" | "tau_I" | "tau_D">} controller */

@@ -2,6 +2,8 @@
 
 /** @import {ControllerState, State, System} from "./types.js" */
 
+import { startingAnalyses } from "./analyses.js";
+
 /**
  * @typedef {object} Preset
  * @property {string} id
@@ -13,7 +15,7 @@
  */
 
 /** @type {ControllerState} */
-export const DEFAULT_CONTROLLER = { type: "PI", form: "ideal", Kc: 1.4, tau_I: 2.2, tau_D: 0.45, alpha: 0.1, action: "reverse" };
+export const DEFAULT_CONTROLLER = { type: "PI", form: "ideal", Kc: 1.4, tau_I: 2.2, tau_D: 0.45, alpha: 0.1, beta: 1, action: "reverse" };
 
 /** @param {string} text @returns {System} */
 const expr = (text) => ({ type: "expr", text });
@@ -131,7 +133,9 @@ export function defaultState() {
   return {
     plant: expr("1/(s+1)^3"),
     controller: { ...DEFAULT_CONTROLLER },
+    actuator: "",
+    sensor: "",
     horizon: null,
-    view: { signal: "setpoint", show: [] },
+    view: { signal: "setpoint", show: [], analyses: startingAnalyses() },
   };
 }

@@ -55,15 +55,17 @@ export function startSession(store, api, { onStatus = () => {} } = {}) {
   async function send(ask) {
     const whole = request(ask);
     if (ask.moving || ask.state.horizon !== null || !whole.want.includes("step")) return api.loop(whole);
+    // Curves over time share one axis.
+    const timed = whole.want.filter((name) => name === "step" || name === "gang_steps");
     const judged = new Set([...whole.want, "verdict", "metrics"]);
-    judged.delete("step");
+    for (const name of timed) judged.delete(name);
     const figures = await api.loop({ ...whole, want: [...judged] });
-    const plant = JSON.stringify(ask.state.plant);
+    const plant = JSON.stringify([ask.state.plant, ask.state.actuator, ask.state.sensor]);
     const verdict = figures.panels.verdict ?? answers.panels.verdict;
     const suits = verdict?.closed_loop_stable ? settledHorizon(figures.panels.metrics ?? answers.panels.metrics, axis.plant === plant ? axis.horizon : null) : null;
     /** @param {number | null} horizon */
     const curves = async (horizon) => {
-      const { panels, unchanged } = await api.loop({ ...whole, want: ["step"], horizon });
+      const { panels, unchanged } = await api.loop({ ...whole, want: timed, horizon });
       axis = { plant, horizon: (panels.step ?? answers.panels.step)?.horizon ?? null };
       return { ...figures, panels: { ...figures.panels, ...panels }, unchanged: [...figures.unchanged, ...unchanged] };
     };

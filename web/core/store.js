@@ -14,8 +14,8 @@ const UNDO_DEPTH = 200;
 /** @typedef {{id: number, name: string, design: Design, panels: import("./types.js").Panels}} Snapshot */
 
 /** @param {State} state @returns {Design} */
-export function designOf({ plant, controller, horizon }) {
-  return { plant, controller, horizon };
+export function designOf({ plant, controller, actuator, sensor, horizon }) {
+  return { plant, controller, actuator, sensor, horizon };
 }
 
 /** @param {Design} a @param {Design} b */
@@ -87,6 +87,11 @@ export function createStore(initial) {
     setView(patch) {
       state = { ...state, view: { ...state.view, ...patch } };
       tell({ moving: false, design: false, view: true });
+    },
+
+    /** @param {Partial<View["analyses"]>} patch */
+    setAnalyses(patch) {
+      this.setView({ analyses: { ...state.view.analyses, ...patch } });
     },
 
     /** @param {(state: State, change: Change) => void} listener @returns {() => void} */

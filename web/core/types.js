@@ -6,7 +6,8 @@
 /** @typedef {{type: "expr", text: string}} ExprSystem */
 /** @typedef {{type: "fopdt", K: number, tau: number, theta: number}} FopdtSystem */
 /** @typedef {{type: "sopdt", K: number, tau: number, zeta: number, theta: number}} SopdtSystem */
-/** @typedef {ExprSystem | FopdtSystem | SopdtSystem} System */
+/** @typedef {{type: "ss", A: number[][], B: number[][], C: number[][], D: number[][], theta: number}} SsSystem */
+/** @typedef {ExprSystem | FopdtSystem | SopdtSystem | SsSystem} System */
 
 /** @typedef {"P" | "PI" | "PD" | "PID"} ControllerType */
 /** @typedef {"ideal" | "series" | "parallel"} ControllerForm */
@@ -21,6 +22,7 @@
  * @property {number} tau_I
  * @property {number} tau_D
  * @property {number} alpha
+ * @property {number} beta  setpoint weight: the proportional part acts on beta r - y
  * @property {"reverse" | "direct"} action
  */
 
@@ -29,7 +31,32 @@
  * @typedef {object} Design
  * @property {System} plant
  * @property {ControllerState} controller
+ * @property {string} actuator  A(s) as text between controller and plant; empty for none
+ * @property {string} sensor  H(s) as text between plant and controller; empty for none
  * @property {number | null} horizon  time axis of the step responses; null lets the server choose
+ */
+
+/** @typedef {{type: string} & Record<string, any>} InputShape  an input signal as the API has it */
+
+/**
+ * @typedef {object} ResponseView
+ * @property {"plant" | "open_loop" | "closed_loop"} of
+ * @property {InputShape} input
+ * @property {{y?: number[], x?: number[]} | null} initial  null is at rest
+ * @property {"superposition" | "convolution" | null} sum
+ * @property {number} slices  of the input, in the convolution sum
+ */
+
+/** @typedef {{a: number[], b: number[], initial: number[]}} LinearOde */
+
+/**
+ * What the analyses are asked beside the loop.
+ * @typedef {object} AnalysesView
+ * @property {ResponseView} response
+ * @property {{input: InputShape | null, ode: LinearOde | null}} laplace  without ode it is the plant
+ * @property {number[] | null} polynomial  of the Routh array; null takes the loop's
+ * @property {"FOPDT" | "SOPDT"} model_type  which low-order models are drawn
+ * @property {number} cancel_tolerance  up to this distance a zero cancels a pole
  */
 
 /**
@@ -37,6 +64,7 @@
  * @typedef {object} View
  * @property {"setpoint" | "load"} signal
  * @property {string[]} show  plots on the stage, in order
+ * @property {AnalysesView} analyses
  */
 
 /** @typedef {Design & {view: View}} State */
@@ -48,6 +76,7 @@
  * @typedef {object} StepSignal
  * @property {Numbers} y
  * @property {Numbers} u
+ * @property {Numbers | null} y_m  what the sensor makes of y; null without a sensor
  * @property {number | null} final_y
  * @property {number | null} truncated_at
  * @property {string | null} truncated_reason
@@ -56,6 +85,54 @@
 /** @typedef {{key: string, horizon: number, t: Numbers, setpoint: StepSignal, load: StepSignal}} StepPanel */
 /** @typedef {{mag_dB: Numbers, phase_deg: Numbers}} Response */
 /** @typedef {{key: string, omega: Numbers, L: Response, P: Response, C: Response}} BodePanel */
+
+/**
+ * A corner of the straight-line Bode diagram; slopes in units of 20 dB/decade.
+ * @typedef {object} Corner
+ * @property {number} omega
+ * @property {"pole" | "zero"} kind
+ * @property {Complex} s
+ * @property {number} multiplicity
+ * @property {number | null} zeta
+ * @property {number} slope_change
+ * @property {number} phase_change_deg
+ * @property {number} phase_from
+ * @property {number} phase_to
+ */
+
+/**
+ * @typedef {object} AsymptotesPanel
+ * @property {string} key
+ * @property {number[]} omega
+ * @property {number[]} mag_dB
+ * @property {number[]} phase_omega
+ * @property {number[]} phase_deg
+ * @property {Corner[]} corners
+ * @property {number} initial_slope
+ * @property {number} initial_phase_deg
+ */
+
+/**
+ * A pole on the imaginary axis, passed on its right, and the arc at infinity that L makes meanwhile.
+ * @typedef {object} IndentationArc
+ * @property {number} omega
+ * @property {number} multiplicity
+ * @property {number} start_deg
+ * @property {number} end_deg
+ * @property {number} turn_deg
+ */
+
+/**
+ * @typedef {object} BodeCriterion
+ * @property {boolean | null} stable
+ * @property {boolean} applies
+ * @property {string[]} unmet
+ * @property {number | null} omega_180
+ * @property {number | null} magnitude
+ * @property {boolean | null} nyquist_stable
+ * @property {boolean | null} agrees
+ * @property {string} explanation
+ */
 
 /**
  * @typedef {object} NyquistPanel
@@ -68,21 +145,27 @@
  * @property {number | null} Z
  * @property {boolean} closed_loop_stable
  * @property {string} explanation
+ * @property {IndentationArc[]} arcs
+ * @property {BodeCriterion} bode_criterion
  */
+
+/** @typedef {{first: number, re: Numbers, im: Numbers, gains?: Numbers | null}} LocusBranch  gains of its own where a window was asked for */
 
 /**
  * @typedef {object} RootLocusPanel
  * @property {string} key
  * @property {boolean} available
  * @property {string | null} reason
- * @property {Numbers} gains
- * @property {{first: number, re: Numbers, im: Numbers}[]} branches
+ * @property {Numbers | null} gains
+ * @property {LocusBranch[]} branches
  * @property {Complex[]} open_loop_poles
  * @property {Complex[]} open_loop_zeros
  * @property {{centroid: number | null, angles_deg: number[], horizontal?: number[]} | null} [asymptotes]  horizontal ones, at these Im s, come with dead time
  * @property {{s: Complex, K: number}[]} breakaways
  * @property {{omega: number, K: number}[]} imaginary_axis_crossings
- * @property {{re: Complex, im: Complex}} view
+ * @property {{s: Complex, angle_deg: number}[]} departure_angles
+ * @property {{s: Complex, angle_deg: number}[]} arrival_angles
+ * @property {{re: Range, im: Range}} view
  */
 
 /** @typedef {{key: string, K: number | null, poles: Complex[], complete: boolean, reason: string | null}} PolesPanel */
@@ -136,7 +219,8 @@
  * @property {number} rhp_poles
  */
 
-/** @typedef {{key: string, omega: Numbers, S_dB: Numbers, T_dB: Numbers, PS_dB: Numbers, CS_dB: Numbers}} SensitivityPanel */
+/** @typedef {{key: string, omega: Numbers, S_dB: Numbers, PS_dB: Numbers, CS_dB: Numbers, T_dB: Numbers, CFS_dB: Numbers, TF_dB: Numbers, feedforward: number}} SensitivityPanel */
+/** @typedef {{key: string, t: Numbers, S: Numbers, PS: Numbers, CS: Numbers, T: Numbers, CFS: Numbers, TF: Numbers, truncated_reason: string | null, feedforward: number}} GangStepsPanel */
 
 /**
  * @typedef {object} Panels
@@ -149,6 +233,9 @@
  * @property {MarginsPanel} [margins]
  * @property {MetricsPanel} [metrics]
  * @property {SensitivityPanel} [sensitivity]
+ * @property {AsymptotesPanel} [asymptotes]
+ * @property {GangStepsPanel} [gang_steps]
+ * @property {RootLocusPanel} [root_locus_negative]
  */
 
 /** @typedef {keyof Panels} PanelName */
@@ -160,6 +247,8 @@
  * @property {string} time_unit
  * @property {SystemText} plant
  * @property {SystemText} controller
+ * @property {SystemText | null} actuator
+ * @property {SystemText | null} sensor
  * @property {PanelName[]} unchanged
  * @property {Panels} panels
  */
@@ -218,6 +307,8 @@
  * @property {string} [hovertemplate]
  * @property {"skip" | "all"} [hoverinfo]
  * @property {boolean} [showlegend]
+ * @property {(string | null)[]} [text]  one a point, for the hover
+ * @property {Numbers | (number | null)[]} [customdata]
  * @property {number} [opacity]
  * @property {string} [fill]
  * @property {string} [fillcolor]
@@ -228,6 +319,6 @@
 /** @typedef {Record<string, Range>} Ranges  axis ranges by axis name; log axes in powers of ten, as Plotly has them */
 /** @typedef {{traces: Trace[], layout: Record<string, any>, ranges: Ranges}} Figure */
 
-/** @typedef {{header: string[], rows: (string | number | null)[][]}} Table */
+/** @typedef {{header: string[], rows: (string | number | null)[][], lead?: number}} Table  the first `lead` rows are never thinned out */
 
 export {};

@@ -4,23 +4,31 @@
 /** @import {Store} from "../core/store.js" */
 
 import { createApi } from "../core/api.js";
-import { PLOT_IDS, SHOWN_NARROW, SHOWN_WIDE } from "../core/plots.js";
+import { ANALYSES, PLOTS, SHOWN_NARROW, SHOWN_WIDE, takesRow, VIEW_IDS } from "../core/plots.js";
 import { sentence } from "../core/format.js";
 import { defaultState } from "../core/presets.js";
 import { startSession } from "../core/session.js";
-import { createStore } from "../core/store.js";
+import { createStore, designOf } from "../core/store.js";
 import { fromQuery, toQuery } from "../core/url.js";
 import "../components/site-header.js";
 import { toast } from "../components/status-toast.js";
 import * as actionsBar from "../panels/actions-bar.js";
 import * as bode from "../panels/bode.js";
 import * as controllerCard from "../panels/controller-card.js";
+import * as instrumentsCard from "../panels/instruments-card.js";
+import * as laplace from "../panels/laplace.js";
 import * as loopDiagram from "../panels/loop-diagram.js";
+import * as lowOrder from "../panels/low-order.js";
+import * as nichols from "../panels/nichols.js";
 import * as numbers from "../panels/numbers.js";
 import * as nyquist from "../panels/nyquist.js";
 import * as plantCard from "../panels/plant-card.js";
+import * as response from "../panels/response.js";
 import * as rootLocus from "../panels/root-locus.js";
+import * as routh from "../panels/routh.js";
 import * as sensitivity from "../panels/sensitivity.js";
+import * as stability from "../panels/stability.js";
+import * as stateSpace from "../panels/state-space.js";
 import * as step from "../panels/step.js";
 import * as testCard from "../panels/test-card.js";
 import * as tuneCard from "../panels/tune-card.js";
@@ -30,7 +38,21 @@ import * as viewBar from "../panels/view-bar.js";
 /** @typedef {(host: HTMLElement, store: Store, api: Api) => () => void} Mount */
 
 /** @type {Record<string, Mount>} */
-const STAGE = { step: step.mount, bode: bode.mount, nyquist: nyquist.mount, root_locus: rootLocus.mount, sensitivity: sensitivity.mount, numbers: numbers.mount };
+const STAGE = {
+  step: step.mount,
+  bode: bode.mount,
+  nyquist: nyquist.mount,
+  nichols: nichols.mount,
+  root_locus: rootLocus.mount,
+  sensitivity: sensitivity.mount,
+  numbers: numbers.mount,
+  response: response.mount,
+  laplace: laplace.mount,
+  routh: routh.mount,
+  stability: stability.mount,
+  state_space: stateSpace.mount,
+  low_order: lowOrder.mount,
+};
 
 const NARROW = matchMedia("(max-width: 63.99rem)");
 
@@ -43,7 +65,7 @@ function place(id) {
 
 const api = createApi();
 const fallback = defaultState();
-const initial = fromQuery(location.search, fallback, PLOT_IDS);
+const initial = fromQuery(location.search, fallback, VIEW_IDS);
 const chosen = initial.view.show.length > 0;
 const store = createStore({ ...initial, view: { ...initial.view, show: chosen ? initial.view.show : NARROW.matches ? SHOWN_NARROW : SHOWN_WIDE } });
 
@@ -55,8 +77,8 @@ const rail = place("rail");
 loopDiagram.mount(rail, store, api);
 // On a narrow page the sliders should be the first thing under the plot.
 plantCard.mount(rail, store, api, { open: !NARROW.matches });
-for (const panel of [controllerCard, tuneCard, testCard]) panel.mount(rail, store, api);
-viewBar.mount(place("views"), store, api, { narrow: () => NARROW.matches });
+for (const panel of [controllerCard, instrumentsCard, tuneCard, testCard]) panel.mount(rail, store, api);
+viewBar.mount(place("views"), store, api, { narrow: () => NARROW.matches, plots: PLOTS, analyses: ANALYSES });
 actionsBar.mount(place("actions"), store, api);
 
 const stage = place("stage");
@@ -73,18 +95,17 @@ function layOut() {
     host.remove();
     mounted.delete(id);
   }
-  for (const id of PLOT_IDS) {
+  for (const id of VIEW_IDS) {
     const mount = STAGE[id];
     if (!show.includes(id) || mounted.has(id) || !mount) continue;
     const host = document.createElement("div");
-    host.className = "slot";
+    host.className = takesRow(id) ? "slot row-slot" : "slot";
     host.dataset["plot"] = id;
-    const next = PLOT_IDS.slice(PLOT_IDS.indexOf(id) + 1).map((name) => mounted.get(name)?.host).find(Boolean);
+    const next = VIEW_IDS.slice(VIEW_IDS.indexOf(id) + 1).map((name) => mounted.get(name)?.host).find(Boolean);
     stage.insertBefore(host, next ?? null);
     mounted.set(id, { host, dispose: mount(host, store, api) });
   }
-  const plots = show.filter((id) => id !== "numbers").length;
-  stage.dataset["plots"] = String(plots);
+  stage.dataset["plots"] = String(show.filter((id) => !takesRow(id)).length);
   document.body.classList.toggle("one-plot", show.length === 1);
 }
 
@@ -124,18 +145,21 @@ NARROW.addEventListener("change", () => {
 });
 
 addEventListener("popstate", () => {
-  const state = fromQuery(location.search, fallback, PLOT_IDS);
-  store.set({ plant: state.plant, controller: state.controller, horizon: state.horizon });
+  const state = fromQuery(location.search, fallback, VIEW_IDS);
+  store.set(designOf(state));
 });
 
 layOut();
+
+/** Whether a card of the rail shows this error beside the field it is about. @param {any} error */
+const saidInPlace = (error) => /plant|actuator|sensor/.test(String(error.path ?? ""));
 
 let troubled = false;
 startSession(store, api, {
   onStatus(status, error) {
     if (status === "waiting") toast().say(`${error.message} Trying again…`, { lasting: true });
-    else if (status === "error" && !String(error.path ?? "").includes("plant")) toast().say([error.message, error.hint].map(sentence).filter(Boolean).join(" "), { lasting: true });
+    else if (status === "error" && !saidInPlace(error)) toast().say([error.message, error.hint].map(sentence).filter(Boolean).join(" "), { lasting: true });
     else if (troubled) toast().hush();
-    troubled = status !== "ok" && !(status === "error" && String(error.path ?? "").includes("plant"));
+    troubled = status !== "ok" && !(status === "error" && saidInPlace(error));
   },
 });

@@ -2,15 +2,17 @@
 
 /** @import {Api} from "../core/api.js" */
 /** @import {Store} from "../core/store.js" */
-/** @import {BodePanel, Table} from "../core/types.js" */
+/** @import {AsymptotesPanel, BodePanel, Table} from "../core/types.js" */
 /** @import {BodeCurve} from "../plots/bode.js" */
 
+import { cornerInWords, startInWords } from "../core/corners.js";
 import { PLOT_HELP } from "../core/explain.js";
 import { formatFixed, formatNumber } from "../core/format.js";
 import { mountPlotPanel } from "../components/plot-panel.js";
 import { bodePlot } from "../plots/bode.js";
+import { levelAt, phaseLineAt } from "../plots/bode_sketch.js";
 import { createFigure } from "../plots/figure.js";
-import { SIGNALS } from "../plots/signals.js";
+import { legendToggle } from "../plots/signals.js";
 
 /** @type {BodeCurve[]} */
 const CURVES = ["L", "P", "C"];
@@ -20,6 +22,9 @@ export function mount(host, store, _api) {
   const { answers } = store;
   /** @type {Set<BodeCurve>} */
   const on = new Set(["L"]);
+  /** Gives the straight lines back; null while they are off. @type {(() => void) | null} */
+  let sketching = null;
+  const sketch = () => (sketching && answers.panels.asymptotes) || null;
 
   const panel = mountPlotPanel(host, store, {
     id: "bode",
@@ -35,6 +40,7 @@ export function mount(host, store, _api) {
           bode,
           margins: margins ?? null,
           curves: CURVES.filter((curve) => on.has(curve)).toReversed(),
+          sketch: sketch(),
           ghosts: store.snapshots.flatMap(({ panels }) => panels.bode ?? []),
           timeUnit: answers.time_unit,
         },
@@ -42,12 +48,11 @@ export function mount(host, store, _api) {
         held,
       );
     },
-    legend: () =>
-      CURVES.map((curve) => {
-        const { label, name, dash } = /** @type {import("../plots/signals.js").Signal} */ (SIGNALS[curve]);
-        return { signal: curve, label, name, dash, on: on.has(curve), toggle: () => toggle(curve) };
-      }),
-    table: () => (answers.panels.bode ? bodeTable(answers.panels.bode, answers.time_unit) : null),
+    legend: () => [
+      ...CURVES.map((curve) => legendToggle(curve, on.has(curve), () => toggle(curve))),
+      legendToggle("sketch", sketching !== null, toggleSketch),
+    ],
+    table: () => (answers.panels.bode ? bodeTable(answers.panels.bode, sketch(), answers.time_unit) : null),
     describe() {
       const margins = answers.panels.margins;
       return `Bode plot of the open loop: gain margin ${formatNumber(margins?.GM)}, phase margin ${formatFixed(margins?.PM_deg, 1)} degrees.`;
@@ -60,13 +65,33 @@ export function mount(host, store, _api) {
     else on.add(curve);
     panel.redraw();
   }
-  return panel.dispose;
+  function toggleSketch() {
+    sketching?.();
+    sketching = sketching ? null : answers.want(["asymptotes"]);
+    panel.redraw();
+  }
+  return () => {
+    sketching?.();
+    panel.dispose();
+  };
 }
 
-/** @param {BodePanel} bode @param {string} unit @returns {Table} */
-function bodeTable({ omega, L, P, C }, unit) {
-  return {
-    header: [`ω [rad/${unit}]`, "|L| [dB]", "arg L [°]", "|P| [dB]", "arg P [°]", "|C| [dB]", "arg C [°]"],
-    rows: Array.from(omega, (w, i) => [w, ...[L, P, C].flatMap(({ mag_dB, phase_deg }) => [mag_dB[i] ?? null, phase_deg[i] ?? null])]),
-  };
+/** The corners first, where they are wanted, then the curves. @param {BodePanel} bode @param {AsymptotesPanel | null} sketch @param {string} unit @returns {Table} */
+function bodeTable({ omega, L, P, C }, sketch, unit) {
+  const others = [P, C];
+  const header = [`ω [rad/${unit}]`, "|L| [dB]", "arg L [°]", ...(sketch ? ["corner of the asymptotes"] : []), "|P| [dB]", "arg P [°]", "|C| [dB]", "arg C [°]"];
+  const rows = Array.from(omega, (w, i) => [
+    w,
+    L.mag_dB[i] ?? null,
+    L.phase_deg[i] ?? null,
+    ...(sketch ? [""] : []),
+    ...others.flatMap(({ mag_dB, phase_deg }) => [mag_dB[i] ?? null, phase_deg[i] ?? null]),
+  ]);
+  if (!sketch) return { header, rows };
+  const blank = [null, null, null, null];
+  const corners = [
+    [0, null, sketch.initial_phase_deg, startInWords(sketch), ...blank],
+    ...sketch.corners.map((corner) => [corner.omega, levelAt(sketch, corner.omega), phaseLineAt(sketch, corner.omega), cornerInWords(corner, unit), ...blank]),
+  ];
+  return { header, rows: [...corners, ...rows], lead: corners.length };
 }

@@ -19,12 +19,14 @@ import "../components/segmented-control.js";
  * @property {number} max
  * @property {boolean} [time]
  * @property {boolean} [hard]
+ * @property {boolean} [linear]  an even scale, on which zero and less are values too
+ * @property {boolean} [aside]  among the things that are seldom set
  * @property {(c: ControllerState) => boolean} shown
  * @property {(c: ControllerState) => number} read
  * @property {(c: ControllerState, value: number) => Partial<ControllerState>} write
  */
 
-/** @param {"Kc" | "tau_I" | "tau_D" | "alpha"} name @returns {Pick<Knob, "name" | "read" | "write">} */
+/** @param {"Kc" | "tau_I" | "tau_D" | "alpha" | "beta"} name @returns {Pick<Knob, "name" | "read" | "write">} */
 const plain = (name) => ({ name, read: (c) => c[name], write: (_, value) => ({ [name]: value }) });
 /** @param {"Kp" | "Ki" | "Kd"} name @returns {Pick<Knob, "name" | "read" | "write">} */
 const parallel = (name) => ({ name, read: (c) => parallelGains(c)[name], write: (c, value) => fromParallel(c, { [name]: value }) });
@@ -37,6 +39,7 @@ const KNOBS = [
   { ...parallel("Kp"), min: 0.1, max: 100, shown: (c) => c.form === "parallel" },
   { ...parallel("Ki"), min: 0.01, max: 100, shown: (c) => c.form === "parallel" && hasIntegral(c.type) },
   { ...parallel("Kd"), min: 0.01, max: 100, shown: (c) => c.form === "parallel" && hasDerivative(c.type) },
+  { ...plain("beta"), min: 0, max: 1, linear: true, aside: true, shown: () => true },
   { ...plain("alpha"), min: 0.01, max: 1, hard: true, shown: (c) => hasDerivative(c.type) },
 ];
 
@@ -72,7 +75,7 @@ export function mount(host, store, _api) {
   );
 
   const knobs = KNOBS.map((knob) => {
-    const slider = h("gain-slider", { name: knob.name, min: knob.min, max: knob.max, above: "0", hard: knob.hard ?? false, unit: knob.time ? answers.time_unit : null });
+    const slider = h("gain-slider", { name: knob.name, min: knob.min, max: knob.max, above: knob.linear ? null : "0", linear: knob.linear ?? false, step: knob.linear ? 0.01 : null, hard: knob.hard ?? false, unit: knob.time ? answers.time_unit : null });
     const take = (/** @type {boolean} */ moving) => (/** @type {Event} */ event) => {
       const { value } = /** @type {CustomEvent<{value: number}>} */ (event).detail;
       store.setController(knob.write(store.get().controller, value), { moving });
@@ -85,8 +88,16 @@ export function mount(host, store, _api) {
   const math = h("div", { class: "math-display small" });
   card.body.append(
     type,
-    h("div", { class: "knobs" }, ...knobs.map(({ slider }) => slider)),
-    h("details", { class: "more" }, h("summary", {}, "Form and action"), h("div", { class: "row labelled" }, h("span", {}, "Form"), form), h("div", { class: "row labelled" }, h("span", {}, "Action"), action), math),
+    h("div", { class: "knobs" }, ...knobs.filter(({ knob }) => !knob.aside).map(({ slider }) => slider)),
+    h(
+      "details",
+      { class: "more" },
+      h("summary", {}, "Form, action, setpoint weight"),
+      h("div", { class: "row labelled" }, h("span", {}, "Form"), form),
+      h("div", { class: "row labelled" }, h("span", {}, "Action"), action),
+      h("div", { class: "knobs" }, ...knobs.filter(({ knob }) => knob.aside).map(({ slider }) => slider)),
+      math,
+    ),
   );
 
   function show() {

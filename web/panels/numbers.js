@@ -4,45 +4,13 @@
 /** @import {Store} from "../core/store.js" */
 
 import { MARGIN_FIELDS, MEANING, METRIC_FIELDS, PLOT_HELP } from "../core/explain.js";
-import { formatAbsent, formatFixed, formatNumber, sentence, UNDEFINED } from "../core/format.js";
+import { formatFixed, formatNumber } from "../core/format.js";
 import { toCsv } from "../core/csv.js";
 import { download } from "../components/data-table.js";
 import { h, setText } from "../components/dom.js";
 import { attachHint } from "../components/hint.js";
 import { icon } from "../components/icons.js";
-
-/**
- * A number with its reason: plain text where it exists, a button that explains where it does not.
- * @returns {{root: HTMLElement, show: (text: string, reason: string | null) => void}}
- */
-function valueCell() {
-  const value = h("span", { class: "value" });
-  const why = h("button", { type: "button", class: "why", hidden: true });
-  const root = h("td", {}, value, why);
-  let reason = "";
-  const hint = attachHint(why, () => ({ title: "Undefined", text: reason }));
-  return {
-    root,
-    show(figure, because) {
-      const text = figure === UNDEFINED ? formatAbsent(because) : figure;
-      const absent = figure === UNDEFINED;
-      reason = sentence(because ?? "this figure does not exist for this loop");
-      setText(value, absent ? "" : text);
-      setText(why, text);
-      why.hidden = !absent;
-      if (absent) hint.describe();
-    },
-  };
-}
-
-/** @param {string} field */
-function rowHead(field) {
-  const meaning = MEANING[field];
-  const button = h("button", { type: "button", class: "term" }, meaning?.name ?? field);
-  const head = h("th", { scope: "row" }, button);
-  attachHint(button, () => ({ title: meaning?.name ?? field, text: meaning?.text ?? "" }));
-  return head;
-}
+import { termHead, valueCell } from "../components/value-cell.js";
 
 /** @param {HTMLElement} host @param {Store} store @param {Api} _api @returns {() => void} */
 export function mount(host, store, _api) {
@@ -62,14 +30,14 @@ export function mount(host, store, _api) {
     "table",
     { class: "numbers" },
     h("caption", {}, "Margins of the open loop"),
-    h("tbody", {}, ...MARGIN_FIELDS.map((field) => h("tr", {}, rowHead(field), cell(`margin.${field}`), unit(field)))),
+    h("tbody", {}, ...MARGIN_FIELDS.map((field) => h("tr", {}, termHead(field), cell(`margin.${field}`), unit(field)))),
   );
   const metrics = h(
     "table",
     { class: "numbers" },
     h("caption", {}, "Step responses"),
     h("thead", {}, h("tr", {}, h("td"), h("th", { scope: "col" }, "Setpoint"), h("th", { scope: "col" }, "Load"), h("td"))),
-    h("tbody", {}, ...METRIC_FIELDS.map((field) => h("tr", {}, rowHead(field), cell(`setpoint.${field}`), cell(`load.${field}`), unit(field)))),
+    h("tbody", {}, ...METRIC_FIELDS.map((field) => h("tr", {}, termHead(field), cell(`setpoint.${field}`), cell(`load.${field}`), unit(field)))),
   );
   const help = h("button", { type: "button", class: "icon-button", "aria-label": "How to read the numbers" }, icon("help"));
   const save = h("button", { type: "button", class: "icon-button", "aria-label": "Download the numbers as CSV", title: "Download" }, icon("download"));

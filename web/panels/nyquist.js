@@ -2,11 +2,13 @@
 
 /** @import {Api} from "../core/api.js" */
 /** @import {Store} from "../core/store.js" */
-/** @import {NyquistPanel} from "../core/types.js" */
+/** @import {BodeCriterion, IndentationArc, NyquistPanel} from "../core/types.js" */
 
 import { PLOT_HELP } from "../core/explain.js";
 import { formatNumber, sentence } from "../core/format.js";
-import { h } from "../components/dom.js";
+import { contourSketch } from "../components/contour-sketch.js";
+import { h, setText } from "../components/dom.js";
+import { attachHint } from "../components/hint.js";
 import { mountPlotPanel } from "../components/plot-panel.js";
 import "../components/segmented-control.js";
 import { createFigure } from "../plots/figure.js";
@@ -21,6 +23,7 @@ export function mount(host, store, _api) {
     { value: "whole", label: "Whole", title: "The whole curve" },
   ];
   choice.value = "near";
+  const note = createNote();
 
   const panel = mountPlotPanel(host, store, {
     id: "nyquist",
@@ -35,7 +38,11 @@ export function mount(host, store, _api) {
       const ghosts = store.snapshots.flatMap(({ panels }) => panels.nyquist ?? []);
       return nyquistPlot({ nyquist, margins: margins ?? null, whole: choice.value === "whole", ghosts }, theme, held);
     },
-    note: () => (answers.panels.nyquist ? count(answers.panels.nyquist) : ""),
+    note() {
+      if (!answers.panels.nyquist) return "";
+      note.show(answers.panels.nyquist);
+      return note.root;
+    },
     table() {
       const nyquist = answers.panels.nyquist;
       if (!nyquist) return null;
@@ -48,6 +55,65 @@ export function mount(host, store, _api) {
   });
   choice.addEventListener("value-change", () => panel.redraw({ refit: true }));
   return panel.dispose;
+}
+
+/** The count, the arcs at infinity, and what Bode's criterion says: elements that stay, so that the focus stays too. */
+function createNote() {
+  const picture = h("span", { class: "contour" });
+  const turns = h("p");
+  const arcs = h("p", { class: "arcs" });
+  const says = h("span");
+  const reason = h("span", { class: "reason" });
+  const criterion = h("button", { type: "button", class: "bode-criterion" }, says, reason);
+  let explanation = "";
+  const line = h("p", {}, criterion);
+  const hint = attachHint(criterion, () => ({ title: "Bode’s criterion, and Nyquist’s", text: explanation }));
+  const root = h("div", { class: "nyquist-note" }, picture, h("div", {}, turns, arcs, line));
+  let drawn = "";
+  return {
+    root,
+    /** @param {NyquistPanel} nyquist */
+    show(nyquist) {
+      const { bode_criterion: bode } = nyquist;
+      const now = JSON.stringify(nyquist.arcs);
+      if (now !== drawn) {
+        picture.replaceChildren(nyquist.arcs.length > 0 ? contourSketch(nyquist.arcs) : "");
+        setText(arcs, arcsInWords(nyquist.arcs));
+        drawn = now;
+      }
+      turns.replaceChildren(count(nyquist));
+      const [both, because] = verdicts(bode);
+      setText(says, both);
+      setText(reason, because);
+      criterion.dataset["agrees"] = String(bode.agrees !== false);
+      explanation = plain(bode.explanation).replaceAll("omega_180", "ω180");
+      hint.describe();
+    },
+  };
+}
+
+const SAYS = { true: "stable", false: "unstable", null: "no verdict" };
+
+/** Both verdicts, and after them why they differ, or why Bode's is no proof. @param {BodeCriterion} criterion @returns {[string, string]} */
+function verdicts({ stable, nyquist_stable, applies, agrees, unmet }) {
+  const both = `Bode: ${SAYS[`${stable}`]}, ${agrees === false ? "but " : ""}Nyquist: ${SAYS[`${nyquist_stable}`]}`;
+  if (applies) return [both, "; Bode’s conditions are met"];
+  return [both, `; Bode’s criterion does not apply: ${plain(unmet[0] ?? "")}`];
+}
+
+/** @param {string} text */
+function plain(text) {
+  return text.replaceAll("-180 deg", "−180°").replaceAll("+-", "±");
+}
+
+/** @param {IndentationArc[]} arcs */
+function arcsInWords(arcs) {
+  if (arcs.length === 0) return "";
+  const each = arcs.map(({ omega, multiplicity, turn_deg }) => {
+    const poles = multiplicity === 1 ? "pole" : `${multiplicity} poles`;
+    return omega === 0 ? `${turn_deg}° ↻ for the ${poles} at 0` : `${turn_deg}° ↻ for the ${poles} at each of ±${formatNumber(omega)}i`;
+  });
+  return `Dashed on the rim, at infinity: ${each.join(", ")}.`;
 }
 
 /** Z = N + P with this loop's numbers, and what they count. @param {NyquistPanel} nyquist @returns {Node | string} */

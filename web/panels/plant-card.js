@@ -4,19 +4,17 @@
 /** @import {Store} from "../core/store.js" */
 /** @import {System} from "../core/types.js" */
 
-import { sentence } from "../core/format.js";
 import { PRESETS } from "../core/presets.js";
 import { createCard } from "../components/card.js";
-import { h, set, setText } from "../components/dom.js";
+import { h } from "../components/dom.js";
+import { createExpressionField } from "../components/expression-field.js";
 import "../components/gain-slider.js";
 import { icon } from "../components/icons.js";
 import { showMath } from "../components/mathml.js";
+import { createMatrixEditor } from "../components/matrix-editor.js";
 import { attachMenu } from "../components/menu.js";
 import "../components/segmented-control.js";
 import { toast } from "../components/status-toast.js";
-
-const TYPING_MS = 250;
-const MAX_TEXT = 500;
 
 /** @type {Record<"fopdt" | "sopdt", {name: string, min: number, max: number, linear?: boolean}[]>} */
 const MODEL = {
@@ -33,8 +31,13 @@ const MODEL = {
   ],
 };
 
-/** @type {Record<"fopdt" | "sopdt", System>} */
-const START = { fopdt: { type: "fopdt", K: 1, tau: 3, theta: 1 }, sopdt: { type: "sopdt", K: 1, tau: 1, zeta: 0.5, theta: 0 } };
+/** @type {Record<"fopdt" | "sopdt" | "ss", System>} */
+const START = { fopdt: { type: "fopdt", K: 1, tau: 3, theta: 1 }, sopdt: { type: "sopdt", K: 1, tau: 1, zeta: 0.5, theta: 0 }, ss: { type: "ss", A: [[0, 1], [-2, -3]], B: [[0], [1]], C: [[1, 0]], D: [[0]], theta: 0 } };
+
+/** @param {System} plant */
+function deadTime(plant) {
+  return "theta" in plant ? plant.theta : 0;
+}
 
 /**
  * @param {HTMLElement} host
@@ -52,24 +55,24 @@ export function mount(host, store, _api, { open = true } = {}) {
     { value: "expr", label: "Expression", title: "Any transfer function in s" },
     { value: "fopdt", label: "1st order", title: "First order with dead time" },
     { value: "sopdt", label: "2nd order", title: "Second order with dead time" },
+    { value: "ss", label: "Matrices", title: "State equations x′ = A x + B u, y = C x + D u" },
   ];
 
-  const input = h("input", { type: "text", id: "plant-text", class: "expression", maxlength: MAX_TEXT, autocomplete: "off", autocapitalize: "off", spellcheck: "false", "aria-describedby": "plant-error plant-hint" });
-  const caret = h("span", { class: "caret-line", "aria-hidden": "true" });
-  const error = h("p", { class: "field-message", id: "plant-error", role: "alert" });
-  const hint = h("p", { class: "field-hint", id: "plant-hint" }, "Like (s+3)/(s^2 (s+2)) exp(-0.1 s)");
-  const expression = h("div", { class: "expression-field" }, h("label", { for: "plant-text" }, h("i", {}, "P"), "(s) ="), h("div", { class: "expression-box" }, input, caret), error, hint);
+  const field = createExpressionField({
+    id: "plant-text",
+    symbol: "P",
+    hint: "Like (s+3)/(s^2 (s+2)) exp(-0.1 s)",
+    commit: (text, run) => store.set({ plant: { type: "expr", text } }, { merge: run }),
+  });
+  const expression = field.root;
   const model = h("div", { class: "knobs" });
+  const matrices = createMatrixEditor({ onMatrices: (typedIn) => store.set({ plant: { type: "ss", theta: deadTime(store.get().plant), ...typedIn } }) });
   const presets = h("button", { type: "button", class: "button", "aria-label": "Pick a plant" }, "Pick", icon("chevron"));
-  card.body.append(math, h("div", { class: "row spread" }, kind, h("span", { class: "menu-holder" }, presets)), expression, model);
+  card.body.append(h("div", { class: "plant-head" }, math, h("span", { class: "menu-holder" }, presets)), kind, expression, model, matrices.root);
 
   /** @type {Map<string, import("../components/gain-slider.js").GainSlider>} */
   const knobs = new Map();
   let built = "";
-  let typing = 0;
-  let typed = "";
-  let visits = 0;
-  let run = "";
 
   const groups = [...new Set(PRESETS.map(({ group }) => group))];
   /** @param {import("../core/presets.js").Preset} preset */
@@ -77,7 +80,7 @@ export function mount(host, store, _api, { open = true } = {}) {
     label: name,
     detail: teaches,
     run() {
-      store.set({ plant, controller: Object.assign({}, store.get().controller, { form: "ideal", action: "reverse" }, controller), horizon: null });
+      store.set({ plant, controller: Object.assign({}, store.get().controller, { form: "ideal", action: "reverse" }, controller), actuator: "", sensor: "", horizon: null });
       toast().say(`${name}: plant and a first controller are set.`, { action: { label: "Undo", run: () => store.undo() } });
     },
   });
@@ -90,23 +93,7 @@ export function mount(host, store, _api, { open = true } = {}) {
     const { plant } = store.get();
     if (kind.value === plant.type) return;
     if (kind.value === "expr") store.set({ plant: { type: "expr", text: answers.plant?.text || "1/(s+1)" } });
-    else store.set({ plant: START[kind.value === "fopdt" ? "fopdt" : "sopdt"] });
-  });
-
-  function commit() {
-    clearTimeout(typing);
-    if (input.value === typed) return;
-    typed = input.value;
-    store.set({ plant: { type: "expr", text: input.value } }, { merge: run });
-  }
-  input.addEventListener("input", () => {
-    clearTimeout(typing);
-    typing = window.setTimeout(commit, TYPING_MS);
-  });
-  input.addEventListener("change", commit);
-  // One visit to the field is one step of undo.
-  input.addEventListener("focus", () => {
-    run = `plant-text-${(visits += 1)}`;
+    else store.set({ plant: START[/** @type {"fopdt" | "sopdt" | "ss"} */ (kind.value)] });
   });
 
   /** @param {"fopdt" | "sopdt"} type */
@@ -133,13 +120,14 @@ export function mount(host, store, _api, { open = true } = {}) {
     const { plant } = store.get();
     kind.value = plant.type;
     expression.hidden = plant.type !== "expr";
-    model.hidden = plant.type === "expr";
+    model.hidden = plant.type === "expr" || plant.type === "ss";
+    matrices.root.hidden = plant.type !== "ss";
     if (plant.type === "expr") {
-      if (plant.text !== typed || document.activeElement !== input) {
-        typed = plant.text;
-        if (input.value !== plant.text) input.value = plant.text;
-      }
+      field.show(plant.text);
       card.summarise(plant.text);
+    } else if (plant.type === "ss") {
+      matrices.show(plant);
+      card.summarise(`matrices, ${plant.A.length === 1 ? "1 state" : `${plant.A.length} states`}`);
     } else {
       build(plant.type);
       for (const [name, knob] of knobs) knob.value = /** @type {Record<string, any>} */ (plant)[name];
@@ -152,11 +140,7 @@ export function mount(host, store, _api, { open = true } = {}) {
     const mine = wrong && (wrong.path === null || wrong.path === undefined || String(wrong.path).includes("plant"));
     showMath(math, answers.plant?.mathml);
     math.classList.toggle("stale", Boolean(mine));
-    set(input, { "aria-invalid": mine ? "true" : null });
-    setText(error, mine ? [wrong.message, wrong.hint].map(sentence).filter(Boolean).join(" ") : "");
-    const column = mine ? (wrong.column ?? null) : null;
-    setText(caret, column === null ? "" : `${"\u00a0".repeat(Math.max(0, column - 1))}▲`);
-    hint.hidden = Boolean(mine);
+    field.complain(mine ? wrong : null);
   }
 
   const stopStore = store.subscribe(showPlant);
@@ -164,7 +148,7 @@ export function mount(host, store, _api, { open = true } = {}) {
   showPlant();
   showAnswer();
   return () => {
-    clearTimeout(typing);
+    field.dispose();
     stopStore();
     stopAnswers();
     card.root.remove();

@@ -55,7 +55,7 @@ export function mount(host, store, _api) {
       );
     },
     legend: () =>
-      ["r", "y", "u"].map((name) => {
+      ["r", "y", ...(answers.panels.step?.setpoint.y_m ? ["y_m"] : []), "u"].map((name) => {
         const { label, name: words, dash } = /** @type {import("../plots/signals.js").Signal} */ (SIGNALS[name]);
         return { signal: name, label, name: words, dash };
       }),
@@ -79,8 +79,10 @@ export function mount(host, store, _api) {
 
 /** @param {StepPanel} step @param {string} unit @returns {Table} */
 function stepTable({ t, setpoint, load }, unit) {
+  const measured = setpoint.y_m && load.y_m ? [setpoint.y_m, load.y_m] : [];
+  const names = ["y, setpoint step", "u, setpoint step", "y, load step", "u, load step", ...(measured.length > 0 ? ["y_m, setpoint step", "y_m, load step"] : [])];
   return {
-    header: [`t [${unit}]`, "y, setpoint step", "u, setpoint step", "y, load step", "u, load step"],
-    rows: Array.from(t, (time, i) => [time, ...[setpoint.y, setpoint.u, load.y, load.u].map((values) => values[i] ?? null)]),
+    header: [`t [${unit}]`, ...names],
+    rows: Array.from(t, (time, i) => [time, ...[setpoint.y, setpoint.u, load.y, load.u, ...measured].map((values) => values[i] ?? null)]),
   };
 }

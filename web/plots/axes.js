@@ -127,7 +127,8 @@ export function baseLayout(theme) {
 export function axis(theme, title, range, more = {}) {
   return {
     title: { text: title, font: { size: theme.fontSize, color: theme.muted }, standoff: 6 },
-    range,
+    // Plotly writes a zoom into the array that it is given.
+    range: [...range],
     gridcolor: theme.grid,
     zerolinecolor: theme.axis,
     zerolinewidth: 1,

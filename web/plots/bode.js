@@ -1,9 +1,10 @@
 /** Bode plot of the open loop, with both margins drawn where they are read. */
 
-/** @import {BodePanel, Figure, MarginsPanel, Numbers, Theme, Trace} from "../core/types.js" */
+/** @import {AsymptotesPanel, BodePanel, Figure, MarginsPanel, Numbers, Theme, Trace} from "../core/types.js" */
 /** @import {Held} from "./axes.js" */
 
 import { axis, baseLayout, extent, holdRange } from "./axes.js";
+import { sketchTraces } from "./bode_sketch.js";
 import { escapePlotly } from "./escape.js";
 import { ghostLine, lineOf } from "./signals.js";
 
@@ -17,6 +18,7 @@ const LIMITS = { mag_dB: [-80, 80], phase_deg: [-450, 270] };
  * @property {BodePanel} bode
  * @property {MarginsPanel | null} margins
  * @property {BodeCurve[]} curves
+ * @property {AsymptotesPanel | null} sketch  straight lines of L, where they are wanted
  * @property {BodePanel[]} ghosts
  * @property {string} timeUnit
  */
@@ -27,7 +29,7 @@ const LIMITS = { mag_dB: [-80, 80], phase_deg: [-450, 270] };
  * @param {Held} held
  * @returns {Figure}
  */
-export function bodePlot({ bode, margins, curves, ghosts, timeUnit }, theme, held) {
+export function bodePlot({ bode, margins, curves, sketch, ghosts, timeUnit }, theme, held) {
   const { omega } = bode;
   const unit = escapePlotly(timeUnit);
 
@@ -47,13 +49,14 @@ export function bodePlot({ bode, margins, curves, ghosts, timeUnit }, theme, hel
     ...ghosts.flatMap((ghost) => ghostTraces(ghost, theme)),
     reference(omega, 0, "y", theme),
     reference(omega, -180, "y2", theme),
+    ...sketchTraces(sketch, theme, timeUnit),
     ...curves.flatMap((curve) => [line(curve, "mag_dB"), line(curve, "phase_deg")]),
     ...marginTraces(bode, margins, theme, unit),
   ];
 
   const shown = curves.map((curve) => bode[curve]);
   const mag = clip(extent(...shown.map((r) => r.mag_dB)), LIMITS.mag_dB);
-  const phase = clip(extent(...shown.map((r) => r.phase_deg), [-180]), LIMITS.phase_deg);
+  const phase = clip(extent(...shown.map((r) => r.phase_deg), sketch?.phase_deg ?? [], [-180]), LIMITS.phase_deg);
   const [first, last] = [Math.log10(omega[0] ?? 0.01), Math.log10(omega[omega.length - 1] ?? 100)];
   const ranges = {
     xaxis: held.moving && held.ranges["xaxis"] ? held.ranges["xaxis"] : /** @type {[number, number]} */ ([first, last]),

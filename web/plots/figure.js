@@ -6,7 +6,7 @@
  * `Plotly.react` follows when the knob is released or has rested for a moment.
  */
 
-/** @import {Figure, Trace} from "../core/types.js" */
+/** @import {Figure, Ranges, Trace} from "../core/types.js" */
 
 import { linePath, toPixel } from "./path.js";
 
@@ -66,6 +66,18 @@ export function createFigure(element) {
   let interval = 0;
   let moving = false;
   let closed = false;
+  /** @type {Set<(ranges: Ranges) => void>} */
+  const zoomListeners = new Set();
+
+  /** Plotly's own words for a zoom name axes and ends; what is asked for are the ranges that are shown now. */
+  function tellZoom() {
+    const full = /** @type {any} */ (element)._fullLayout;
+    if (!full || closed) return;
+    /** @type {Ranges} */
+    const ranges = {};
+    for (const axis of Object.keys(latest?.ranges ?? {})) ranges[axis] = [full[axis].range[0], full[axis].range[1]];
+    for (const listener of zoomListeners) listener(ranges);
+  }
 
   /** @param {Drawn["way"]} way @param {number} since */
   function report(way, since) {
@@ -84,10 +96,12 @@ export function createFigure(element) {
       if (closed || !latest || element.clientWidth === 0) return;
       const since = performance.now();
       const { traces, layout } = latest;
+      const first = drawn === "";
       drawn = signature(latest);
       // Plotly skips what it takes for unchanged, but the fast path has drawn over it: the revision makes it look.
       revision += 1;
       await plotly.react(element, traces, { ...layout, datarevision: revision, width: element.clientWidth, height: element.clientHeight }, CONFIG);
+      if (first) /** @type {any} */ (element).on("plotly_relayout", tellZoom);
       report("react", since);
     });
   }
@@ -123,6 +137,10 @@ export function createFigure(element) {
         if (drawn === signature(latest)) paintNow();
         settle();
       }
+    },
+    /** Tells the ranges shown whenever the student has zoomed, moved or reset them. @param {(ranges: Ranges) => void} listener */
+    onZoom(listener) {
+      zoomListeners.add(listener);
     },
     /** Takes back the student's zoom. */
     resetZoom() {

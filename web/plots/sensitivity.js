@@ -1,13 +1,13 @@
-/** The gang of four against frequency. */
+/** The gang of six against frequency, and against time. */
 
-/** @import {Figure, SensitivityPanel, Theme, Trace} from "../core/types.js" */
+/** @import {Figure, GangStepsPanel, SensitivityPanel, Theme, Trace} from "../core/types.js" */
 /** @import {Held} from "./axes.js" */
 
-import { axis, baseLayout, extent, holdRange } from "./axes.js";
+import { axis, baseLayout, extent, holdRange, runawayExtent } from "./axes.js";
 import { escapePlotly } from "./escape.js";
 import { lineOf } from "./signals.js";
 
-/** @typedef {"S" | "PS" | "CS" | "T"} GangMember */
+/** @typedef {"S" | "PS" | "CS" | "T" | "CFS" | "TF"} GangMember */
 
 const FLOOR_DB = -60;
 
@@ -47,6 +47,42 @@ export function sensitivityPlot({ sensitivity, curves, timeUnit }, theme, held) 
       ...baseLayout(theme),
       xaxis: axis(theme, `ω [rad/${unit}]`, ranges.xaxis, { type: "log", dtick: 1, zeroline: false }),
       yaxis: axis(theme, "magnitude [dB]", ranges.yaxis, { zerolinewidth: 1.5, zerolinecolor: theme.muted }),
+    },
+  };
+}
+
+/**
+ * Responses to unit steps.
+ * @param {{steps: GangStepsPanel, curves: GangMember[], stable: boolean, timeUnit: string}} input
+ * @param {Theme} theme
+ * @param {Held} held
+ * @returns {Figure}
+ */
+export function gangStepsPlot({ steps, curves, stable, timeUnit }, theme, held) {
+  const unit = escapePlotly(timeUnit);
+  const traces = curves.map(
+    (name) =>
+      /** @type {Trace} */ ({
+        type: "scatter",
+        mode: "lines",
+        name,
+        x: steps.t,
+        y: steps[name],
+        line: lineOf(name, theme),
+        hovertemplate: `${name}: %{y:.4~g} at %{x:.4~g} ${unit}<extra></extra>`,
+      }),
+  );
+  const extents = curves.map((name) => (stable ? extent(steps[name]) : runawayExtent(steps[name], 1)));
+  const [low, high] = extent(extents.flat(), [0, 1]);
+  const end = steps.t[steps.t.length - 1] ?? 1;
+  const ranges = { xaxis: held.moving && held.ranges["xaxis"] ? held.ranges["xaxis"] : /** @type {[number, number]} */ ([0, end]), yaxis: holdRange(held, "yaxis", low, high) };
+  return {
+    traces,
+    ranges,
+    layout: {
+      ...baseLayout(theme),
+      xaxis: axis(theme, `t [${unit}]`, ranges.xaxis),
+      yaxis: axis(theme, "step response", ranges.yaxis),
     },
   };
 }

@@ -17,6 +17,7 @@
 export const SIGNALS = {
   r: { label: "r", name: "setpoint", dash: "dash", width: 1.5 },
   y: { label: "y", name: "process output", dash: "solid", width: 2.5 },
+  y_m: { label: "yₘ", name: "measured output", dash: "dash", width: 1.75 },
   u: { label: "u", name: "controller output", dash: "solid", width: 2 },
   d: { label: "d", name: "load disturbance", dash: "dashdot", width: 2 },
   n: { label: "n", name: "measurement noise", dash: "dot", width: 1.5 },
@@ -24,11 +25,32 @@ export const SIGNALS = {
   L: { label: "L", name: "open loop", dash: "solid", width: 2.5 },
   P: { label: "P", name: "plant", dash: "dash", width: 1.75 },
   C: { label: "C", name: "controller", dash: "dot", width: 2 },
+  sketch: { label: "asymptotes", name: "straight lines of L, with what each corner is", dash: "solid", width: 1.5 },
   S: { label: "S", name: "sensitivity", dash: "solid", width: 2.25 },
   PS: { label: "PS", name: "load to output", dash: "dashdot", width: 1.75 },
   CS: { label: "CS", name: "noise to controller output", dash: "dot", width: 2 },
+  CFS: { label: "CFS", name: "setpoint to controller output, weighted", dash: "dashdot", width: 1.75 },
+  TF: { label: "TF", name: "setpoint to output, weighted", dash: "dash", width: 2 },
   T: { label: "T", name: "complementary sensitivity", dash: "longdash", width: 2.25 },
+  term: { label: "terms", name: "what is added up", dash: "solid", width: 1 },
+  sum: { label: "sum", name: "sum of the terms", dash: "dash", width: 2 },
+  simulated: { label: "simulated", name: "simulation of the same transform", dash: "dot", width: 2 },
+  half_rule: { label: "half rule", name: "half rule", dash: "dash", width: 2 },
+  taylor: { label: "Taylor", name: "Taylor", dash: "dot", width: 2 },
+  two_point: { label: "two points", name: "two points of the step response", dash: "dashdot", width: 2 },
+  least_squares: { label: "least squares", name: "least squares", dash: "longdash", width: 2 },
 };
+
+/**
+ * A legend's button for a signal that can be switched on and off.
+ * @param {string} signal
+ * @param {boolean} on
+ * @param {() => void} toggle
+ */
+export function legendToggle(signal, on, toggle) {
+  const { label, name, dash } = /** @type {Signal} */ (SIGNALS[signal]);
+  return { signal, label, name, dash, on, toggle };
+}
 
 /**
  * @param {keyof typeof SIGNALS} signal

@@ -1,4 +1,4 @@
-/** Step responses: y with its setpoint above, u below, on one time axis. */
+/** Step responses: y with its setpoint above (and what a sensor makes of y), u below, on one time axis. */
 
 /** @import {Figure, Metrics, Numbers, StepPanel, Theme, Trace} from "../core/types.js" */
 /** @import {Held} from "./axes.js" */
@@ -26,7 +26,7 @@ import { ghostLine, lineOf } from "./signals.js";
  */
 export function stepResponse({ step, metrics, stable, signal, ghosts, timeUnit }, theme, held) {
   const { t, horizon } = step;
-  const { y, u } = step[signal];
+  const { y, u, y_m } = step[signal];
   const target = signal === "setpoint" ? 1 : 0;
   const unit = escapePlotly(timeUnit);
   const hover = `%{y:.4~g} at %{x:.4~g} ${unit}<extra></extra>`;
@@ -52,6 +52,7 @@ export function stepResponse({ step, metrics, stable, signal, ghosts, timeUnit }
     { ...line("r", [0, 0, horizon], [0, target, target], "y"), hoverinfo: "skip" },
     settleTrace(settled, t, y, theme),
     line("u", t.slice(0, u.length), u, "y2"),
+    ...(y_m ? [line("y_m", t.slice(0, y_m.length), y_m, "y")] : []),
     line("y", t.slice(0, y.length), y, "y"),
     {
       type: "scatter",

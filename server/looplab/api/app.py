@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
 from fastapi import APIRouter, FastAPI
 
 from looplab import __version__
 from looplab.api import errors, pages
 from looplab.api.limits import BodyLimit
 from looplab.api.routes import (
+    connect,
     frequency,
     health,
     labs,
     laplace,
     loop,
+    models,
+    plants,
     response,
     root_locus,
     routh,
@@ -22,6 +28,7 @@ from looplab.api.routes import (
 )
 from looplab.api.security import SecurityHeaders
 from looplab.api.settings import Settings
+from looplab.jobs import WorkerPool
 
 DESCRIPTION = """Feedback loops with exact dead time: simulate, analyse, tune, grade.
 
@@ -42,7 +49,15 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     FastAPI
     """
     settings = settings or Settings()
+    workers = WorkerPool(settings.workers, settings.budget, settings.deadline, settings.waiting)
+
+    @asynccontextmanager
+    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        yield
+        workers.close()
+
     app = FastAPI(
+        lifespan=lifespan,
         title="looplab",
         version=__version__,
         description=DESCRIPTION,
@@ -51,8 +66,12 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         docs_url=None,
         redoc_url=None,
     )
+    app.state.workers = workers
     v1 = APIRouter(prefix="/api/v1")
-    for module in (health, loop, frequency, root_locus, tune, laplace, labs, routh, stability, response, state_space):
+    for module in (
+        *(health, loop, frequency, root_locus, tune, laplace, labs, routh, stability, response, state_space, connect),
+        *(plants, models),
+    ):
         v1.include_router(module.router)
     app.include_router(v1)
     errors.install(app)

@@ -25,3 +25,10 @@ ERRORS: dict[int | str, dict[str, Any]] = {
         example_error("parse_error", "unknown name 's2' (column 3)", "loop.plant.text", "for a power write s^2"),
     ),
 }
+
+BUSY: dict[int | str, dict[str, Any]] = {
+    503: _documented(
+        "Too much is being computed already; Retry-After says when to ask again.",
+        example_error("overloaded", "the server is computing as much as it can", "", "ask again in a second"),
+    ),
+}

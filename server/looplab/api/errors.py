@@ -1,4 +1,4 @@
-"""One error shape for every route: {"error": {"code", "message", "path", "hint"}}, always 4xx."""
+"""One error shape for every route: {"error": {"code", "message", "path", "hint"}}, 4xx, or 503 when busy."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from starlette.exceptions import HTTPException as StarletteHTTPException
 from starlette.responses import Response
 
 from looplab.engine.errors import EngineError
+from looplab.jobs import Overloaded
 from looplab.schemas import json_path
 
 
@@ -75,6 +76,14 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(EngineError)
     async def _engine_error(_: Request, error: EngineError) -> Response:
         return error_response(ApiError(422, code_of(error), error.message, error.field or "", error.hint))
+
+    @app.exception_handler(Overloaded)
+    async def _overloaded(_: Request, error: Exception) -> Response:
+        response = error_response(
+            ApiError(503, "overloaded", "the server is computing as much as it can", hint="ask again in a second")
+        )
+        response.headers["Retry-After"] = str(Overloaded.retry_after)
+        return response
 
     @app.exception_handler(ArithmeticError)
     @app.exception_handler(LinAlgError)

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 from pydantic import Field, model_validator
 
 from looplab.engine.frequency import nyquist_count, nyquist_curve
+from looplab.engine.frequency.bode_criterion import BodeCriterion, bode_criterion
+from looplab.engine.frequency.indentation import indentation_arcs
+from looplab.engine.frequency.sketch import bode_sketch
 from looplab.engine.loop import FeedbackLoop
 from looplab.engine.systems import TransferFunction
 from looplab.schemas import Loop, Model, System, located
 
 
 class OpenLoopRequest(Model):
-    """The open loop L: a system of its own, or plant and controller."""
+    """The open loop L: a system of its own, or that of a loop."""
 
     system: System | None = Field(default=None, description="L(s) itself, proper.")
-    loop: Loop | None = Field(default=None, description="Plant and controller; L = P C.")
+    loop: Loop | None = Field(default=None, description="A loop; L = C A P H.")
 
     @model_validator(mode="after")
     def _one(self) -> OpenLoopRequest:
@@ -57,8 +61,8 @@ def nyquist_words(L: TransferFunction) -> str:
 
 
 def nyquist_answer(L: TransferFunction, closed_loop_stable: bool) -> dict[str, Any]:
-    """The curve for omega > 0, and the count with its verdict."""
-    curve, count = nyquist_curve(L), nyquist_count(L)
+    """The curve for omega > 0, the arcs that close it, the count with its verdict, and Bode's criterion beside it."""
+    curve, count, criterion = nyquist_curve(L), nyquist_count(L), bode_criterion(L)
     return {
         "omega": curve.omega,
         "re": curve.re,
@@ -68,6 +72,44 @@ def nyquist_answer(L: TransferFunction, closed_loop_stable: bool) -> dict[str, A
         "Z": count.Z,
         "closed_loop_stable": closed_loop_stable,
         "explanation": nyquist_words(L),
+        "arcs": [asdict(arc) | {"turn_deg": arc.turn_deg} for arc in indentation_arcs(L)],
+        "bode_criterion": {**asdict(criterion), "explanation": bode_words(criterion)},
+    }
+
+
+def bode_words(criterion: BodeCriterion) -> str:
+    """What Bode's criterion says, what Nyquist's says, and why they differ where they do."""
+    c = criterion
+    says = {True: "stable", False: "unstable", None: "on the limit of stability"}
+    if c.magnitude is not None and c.omega_180 is not None:
+        size = "<" if c.stable else "=" if c.stable is None else ">"
+        where = f"|L| = {c.magnitude:.4g} {size} 1 at omega_180 = {c.omega_180:.4g}"
+    elif c.stable:
+        where = "the phase never crosses -180 deg"
+    else:
+        where = "the phase crossovers cannot be listed"
+    if c.stable is None and c.magnitude is None:
+        return f"Bode: no verdict, {where}. Nyquist: {says[c.nyquist_stable]}."
+    text = f"Bode: {says[c.stable]}, for {where}. Nyquist: {says[c.nyquist_stable]}."
+    why = "; ".join(c.unmet)
+    if c.applies:
+        return f"{text} The conditions of Bode's criterion are met, and the two agree."
+    if c.agrees is False:
+        return f"{text} They disagree, and Nyquist is right: Bode's criterion does not hold here, because {why}."
+    return f"{text} Bode's criterion proves nothing here, because {why}."
+
+
+def asymptotes_answer(L: TransferFunction, low: float, high: float) -> dict[str, Any]:
+    """The straight lines of L, and what each corner is."""
+    sketch = bode_sketch(L, low, high)
+    return {
+        "omega": sketch.omega.tolist(),
+        "mag_dB": sketch.mag_dB.tolist(),
+        "phase_omega": sketch.phase_omega.tolist(),
+        "phase_deg": sketch.phase_deg.tolist(),
+        "corners": [asdict(c) | {"s": [c.s.real, c.s.imag]} for c in sketch.corners],
+        "initial_slope": sketch.initial_slope,
+        "initial_phase_deg": sketch.initial_phase_deg,
     }
 
 

@@ -1,5 +1,10 @@
 """Errors of the engine: what is wrong, in which field, and a way out. They know nothing of HTTP."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
 
 class EngineError(ValueError):
     """A request the engine cannot answer.
@@ -19,6 +24,17 @@ class EngineError(ValueError):
         self.message = message
         self.field = field
         self.hint = hint
+
+    def __reduce__(self) -> tuple[Callable[..., EngineError], tuple[type[EngineError], dict[str, Any]]]:
+        # Workers send errors back: as they are, whatever arguments the subclass is made from.
+        return _restored, (type(self), {**self.__dict__, "args": self.args})
+
+
+def _restored(kind: type[EngineError], state: dict[str, Any]) -> EngineError:
+    error = kind.__new__(kind)
+    for name, value in state.items():
+        setattr(error, name, value)
+    return error
 
 
 class InvalidInput(EngineError):

@@ -2,8 +2,10 @@
 
 from looplab.schemas.base import Model, json_path, located
 from looplab.schemas.controllers import Controller, ParallelPID, StandardPID
+from looplab.schemas.courses import Course, InputCourses
 from looplab.schemas.inputs import InputShape
 from looplab.schemas.loops import Loop
+from looplab.schemas.models import NonlinearModel
 from looplab.schemas.state_space import Matrices, StateSpaceSystem, state_space_latex
 from looplab.schemas.systems import (
     ExpressionSystem,
@@ -16,12 +18,15 @@ from looplab.schemas.systems import (
 
 __all__ = [
     "Controller",
+    "Course",
     "ExpressionSystem",
     "FOPDTSystem",
+    "InputCourses",
     "InputShape",
     "Loop",
     "Matrices",
     "Model",
+    "NonlinearModel",
     "ParallelPID",
     "PolynomialSystem",
     "SOPDTSystem",

@@ -88,7 +88,7 @@ class FOPDTSystem(Model):
 
     def to_latex(self) -> str:
         """The model with its numbers."""
-        fraction = rf"\frac{{{latex_number(self.K, 4)}}}{{{latex_number(self.tau, 4)}\,s + 1}}"
+        fraction = rf"\frac{{{latex_number(self.K, 4)}}}{{{_polynomial_latex([self.tau, 1.0])}}}"
         return fraction + _dead_time_latex(self.theta)
 
 

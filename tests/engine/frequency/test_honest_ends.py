@@ -1,5 +1,7 @@
 """Where a list is cut or a peak lies at an end of the frequency axis, the answer says so."""
 
+from math import pi
+
 import pytest
 
 from looplab.engine.frequency import margins
@@ -28,10 +30,46 @@ def test_a_whole_list_needs_no_words() -> None:
         ("8", 1 / 9, None, 8 / 9, None),
         # S = s/(s+1) tends to 1; T = 1/(s+1) is 1 at rest
         ("1/s", 1.0, None, 1.0, 0.0),
+        # the curve runs around the circle of radius 2 for ever: 1/|1 + 2 e^{-jx}| is 1 at most
+        ("2 exp(-s)", 1.0, pi, 2.0, pi),
+        # |L| falls towards 1.5: S tends to 1/(1.5 - 1)
+        ("1.5(s+2)exp(-s)/(s+1)", 2.0, None, 3.0, None),
+        # the mode at +-j is hidden, and the curve that of 2/(s+1): S tends to 1, T is 2/3 at rest
+        ("2(s^2+1)/((s^2+1)(s+1))", 1.0, None, 2 / 3, 0.0),
     ],
 )
 def test_peaks_at_the_ends(text: str, Ms: float, omega_Ms: float | None, Mt: float, omega_Mt: float | None) -> None:
     result = margins(parse_transfer_function(text))
     assert result.Ms == pytest.approx(Ms, rel=1e-9)
     assert result.Mt == pytest.approx(Mt, rel=1e-9)
-    assert (result.omega_Ms, result.omega_Mt) == (omega_Ms, omega_Mt)
+    assert (result.omega_Ms, result.omega_Mt) == (
+        omega_Ms if not omega_Ms else pytest.approx(omega_Ms),
+        omega_Mt if not omega_Mt else pytest.approx(omega_Mt),
+    )
+
+
+@pytest.mark.parametrize("text", ["1/s^2", "3/(s^2+1)", "8/(s+1)^3", "exp(-s)", "-1/(s+1)"])
+def test_through_minus_one_both_peaks_are_infinite(text: str) -> None:
+    result = margins(parse_transfer_function(text))
+    assert (result.Ms, result.Mt) == (None, None)
+    assert "-1" in result.reasons["Ms"]
+    assert "-1" in result.reasons["Mt"]
+
+
+@pytest.mark.parametrize("text", ["2s(s+1)/(s(s+1)^2)", "2(s^2+1)/((s^2+1)(s+1))", "0/(s(s+1))"])
+def test_a_hidden_mode_on_the_axis_leaves_no_delay_margin(text: str) -> None:
+    """It does not decay, however good the curve looks."""
+    result = margins(parse_transfer_function(text))
+    assert not result.closed_loop_stable
+    assert result.delay_margin is None
+
+
+def test_a_hidden_mode_on_the_axis_is_no_crossover() -> None:
+    """|2/(jw + 1)| = 1 at sqrt(3) alone; at w = 1 the factors are 0/0."""
+    (crossover,) = margins(parse_transfer_function("2(s^2+1)/((s^2+1)(s+1))")).gain_crossovers
+    assert crossover.omega == pytest.approx(3**0.5, rel=1e-12)
+
+
+def test_a_gain_that_stays_above_1() -> None:
+    assert "never falls to 1" in margins(parse_transfer_function("2 exp(-s)")).reasons["PM_deg"]
+    assert "never reaches 1" in margins(parse_transfer_function("0.5 exp(-s)")).reasons["PM_deg"]

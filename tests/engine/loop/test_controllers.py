@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from looplab.engine.errors import EngineError, ImproperSystem, InvalidInput
-from looplab.engine.loop import PID
+from looplab.engine.loop import PID, FeedbackLoop
+from looplab.engine.systems import parse_transfer_function
 from strategies import effort, magnitudes, numbers
 
 S = np.array([0.01j, 0.3 + 0.7j, 4j, 100j])
@@ -74,3 +75,25 @@ def test_parallel_settings_without_an_ideal_form(settings: tuple) -> None:
     with pytest.raises(EngineError) as caught:
         PID.from_parallel(*settings)
     assert caught.value.field in ("Kp", "Ki", "Kd")
+
+
+@pytest.mark.parametrize(
+    ("text", "filtered"),
+    [
+        ("2(1 + 1/(5s) + 0.5s)", "2 (1 + 1/(5 s) + 0.5 s/(0.05 s + 1))"),
+        ("-3(1 + 0.2s)", "-3 (1 + 0.2 s/(0.02 s + 1))"),
+    ],
+)
+def test_a_typed_pid_without_a_filter_is_named_and_its_filtered_form_offered(text: str, filtered: str) -> None:
+    with pytest.raises(ImproperSystem) as caught:
+        FeedbackLoop(parse_transfer_function("1/(s+1)^2"), parse_transfer_function(text))
+    assert "not causal" in caught.value.message
+    assert filtered in caught.value.hint
+    FeedbackLoop(parse_transfer_function("1/(s+1)^2"), parse_transfer_function(filtered))
+
+
+@pytest.mark.parametrize("text", ["s", "1/s + s", "(s+1)^3/s", "s^2 + s + 1", "1 - s"])
+def test_what_differentiates_otherwise_is_told_so(text: str) -> None:
+    with pytest.raises(ImproperSystem) as caught:
+        FeedbackLoop(parse_transfer_function("1/(s+1)^4"), parse_transfer_function(text))
+    assert "differentiates" in caught.value.message

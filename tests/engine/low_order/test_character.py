@@ -102,3 +102,8 @@ def test_other_orders_are_refused() -> None:
             characterize(parse_transfer_function(text))
     with pytest.raises(ImproperSystem):
         characterize(parse_transfer_function("s"))
+
+
+@pytest.mark.parametrize("text", ["2/(9s^2+9s+1)", "1/((3s+1)(7s+1))", "2 exp(-s)/(9s^2+1.8s+1)"])
+def test_two_lags_start_flat(text: str) -> None:
+    assert characterize(parse_transfer_function(text)).initial_slope == 0.0

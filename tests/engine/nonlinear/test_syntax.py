@@ -184,11 +184,17 @@ def test_the_printer_writes_no_needless_brackets(text, again):
 @pytest.mark.parametrize(
     ("text", "latex"),
     [
-        ("k0*exp(-E/(R*T))", r"k_{0} \, e^{\frac{-E}{R \, T}}"),
+        ("k0*exp(-E/(R*T))", r"k_{0} \, e^{-\frac{E}{R \, T}}"),
         ("beta*sqrt(h)", r"\beta \, \sqrt{h}"),
         ("(a + b)^2", r"\left(a + b\right)^{2}"),
         ("2*3", r"2 \cdot 3"),
         ("7.2e10*x", r"7.2 \cdot 10^{10} \, x"),
+        ("a*(-b)/c - -d", r"-\frac{a \, b}{c} + d"),
+        ("-(a*b) + -c", r"-a \, b - c"),
+        ("-a/-b", r"\frac{a}{b}"),
+        ("--a", "a"),
+        ("(-a)^2 - (b - c)", r"\left(-a\right)^{2} - \left(b - c\right)"),
+        ("a*(b + c)/2*3", r"\frac{a \, \left(b + c\right)}{2} \cdot 3"),
         ("-(a + b)", r"-\left(a + b\right)"),
         ("abs(x) - log(y)", r"\left|x\right| - \ln\left(y\right)"),
         ("cA", r"\mathrm{cA}"),

@@ -1,13 +1,15 @@
 """Closed-loop poles and the verdict: exact equation, independent counts, hidden modes, poles on the axis."""
 
+from math import comb
+
 import numpy as np
 import pytest
 from hypothesis import assume, given, note
 
 from independent import rhp_closed_loop_poles
-from looplab.engine.frequency import nyquist_count
+from looplab.engine.frequency import margins, nyquist_count
 from looplab.engine.loop import PID, FeedbackLoop
-from looplab.engine.stability import closed_loop_poles, closed_loop_verdict
+from looplab.engine.stability import closed_loop_poles, closed_loop_verdict, gain_ranges
 from looplab.engine.systems import TransferFunction, parse_transfer_function
 from strategies import controllers, effort, systems
 
@@ -152,3 +154,50 @@ def test_never_stable(K: float) -> None:
     answer = closed_loop_verdict(loop("(s+3)/(s^2*(s+2)*(s+4)*(s^2+2s+9)*(s^3+5))", K))
     assert answer.verdict == "unstable"
     assert answer.rhp_poles >= 2
+
+
+@pytest.mark.parametrize("expanded", [False, True])
+@pytest.mark.parametrize("n", [3, 6, 10, 20, 35, 50])
+def test_the_limit_of_n_equal_lags(n: int, expanded: bool) -> None:
+    """(s+1)^n + K = 0: s = -1 + K^(1/n) e^{j pi (2k+1)/n}, and two cross the axis at K = sec(pi/n)^n.
+
+    Multiplied out the coefficients are whole numbers, exact up to n = 50: their roots scatter by 1.3, the loop not.
+    """
+    limit = np.cos(np.pi / n) ** -n
+    plant = TransferFunction.from_polynomials([1.0], [float(comb(n, k)) for k in range(n + 1)])
+    plant = plant if expanded else TransferFunction((), [-1.0] * n)
+    (stable,) = gain_ranges(plant).ranges
+    assert stable.high.K == pytest.approx(limit, rel=1e-9 if expanded else 1e-12)
+    assert stable.high.omega == pytest.approx((np.tan(np.pi / n),), rel=1e-9 if expanded else 1e-12)
+    for factor, right in ((0.5, 0), (1 - 1e-3, 0), (1 - 1e-6, 0), (1 + 1e-6, 2), (1 + 1e-3, 2)):
+        K = limit * factor
+        loop = FeedbackLoop(plant, PID(K))
+        verdict = closed_loop_verdict(loop)
+        assert (verdict.verdict, verdict.rhp_poles) == (("unstable" if right else "stable"), right)
+        assert margins(loop.open_loop).closed_loop_stable == (right == 0)
+        if not expanded:
+            exact = -1 + K ** (1 / n) * np.exp(1j * np.pi * (2 * np.arange(n) + 1) / n)
+            gap = np.abs(closed_loop_poles(loop).poles[:, None] - exact)
+            assert max(gap.min(axis=0).max(), gap.min(axis=1).max()) < 1e-13
+
+
+@pytest.mark.parametrize(
+    ("plant", "C", "poles", "verdict"),
+    [
+        ("1/(s+2)", PID(0.0), [-2], "stable"),
+        ("1/(s+2)", PID(0.0, 1.0), [0, -2], "marginal"),
+        ("exp(-s)/(s-1)", PID(0.0), [1], "unstable"),
+        ("0/(s-1)", PID(3.0), [1], "unstable"),
+    ],
+)
+def test_a_loop_that_is_cut_keeps_its_poles(plant: str, C: PID, poles: list[float], verdict: str) -> None:
+    cut = loop(plant, C)
+    assert closed_loop_poles(cut).poles.tolist() == poles
+    assert closed_loop_verdict(cut).verdict == verdict
+    assert margins(cut.open_loop).closed_loop_stable == (verdict == "stable")
+
+
+def test_of_poles_above_one_another_the_slowest_is_named() -> None:
+    """0.5 e^{-s} = -1: s = ln 0.5 + j pi (2k+1)."""
+    found = closed_loop_poles(loop("exp(-s)", 0.5)).poles
+    assert found[:4] == pytest.approx(np.log(0.5) + 1j * np.pi * np.array([1, -1, 3, -3]), abs=1e-10)

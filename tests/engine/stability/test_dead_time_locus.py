@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import lambertw
 
-from looplab.engine.stability import count_in_rectangle, root_locus
+from looplab.engine.stability import breakaway_points, count_in_rectangle, root_locus
 from looplab.engine.systems import TransferFunction, parse_transfer_function
 
 LOOPS = [
@@ -23,6 +23,14 @@ LOOPS = [
     "-exp(-s)/(s+2)",
     "(1-s)exp(-0.3s)/(s+1)^2",
     "exp(-0.01s)/((s+1)(0.05s+1))",
+]
+
+# High orders over many decades of gain: eigenvalues lose poles next to the roots that they leave or reach.
+WIDE = [
+    "1e5(s+4.6)(s+3.6)exp(-2s)/(s(s+23)(s+4.7)((s+0.46)^2+0.33)((s+0.3)^2+0.01)((s+0.27)^2+0.04))",
+    "-2e7(s+5.7)(s-0.37)exp(-0.08s)/(s(s+1.7)(s+0.57)(s+0.54)(s+0.22)((s+0.4)^2+6.1)((s+0.26)^2+0.04)(s^2+0.2s+0.05))",
+    "0.02(s+2.4)(s+1.74)^2(s+1.1)(s+0.4)((s+0.5)^2+9)exp(-0.3s)/(s^3(s+4)(s+3.6)(s+3.1)(s+1.2)(s+0.7))",
+    "(s+0.7)exp(-0.24s)/((s+14)(s+2.6)(s+1.7)(s+1.3)(s+0.93)(s+0.45)(s+0.44)((s+1.2)^2+0.4)((s+0.5)^2+0.1))",
 ]
 
 
@@ -43,7 +51,7 @@ def test_points_solve_the_exact_equation(text: str) -> None:
     assert np.abs(1 + K * L(s)).max() < 1e-9
 
 
-@pytest.mark.parametrize("text", LOOPS)
+@pytest.mark.parametrize("text", [*LOOPS, *WIDE])
 def test_no_branch_is_missed(text: str) -> None:
     """The argument principle finds as many poles in a rectangle as the locus has there, at other gains than its own."""
     L = parse_transfer_function(text)
@@ -60,6 +68,17 @@ def test_no_branch_is_missed(text: str) -> None:
         counted = count_in_rectangle(L, K, left, right, -top, top)
         if counted is not None:
             assert counted == inside[0]
+
+
+@pytest.mark.parametrize("text", [t for t in [*LOOPS, *WIDE] if breakaway_points(parse_transfer_function(t))])
+def test_two_branches_meet_in_each_meeting_point(text: str) -> None:
+    """At its gain both branches pass exactly through it: the corner is sharp and neither has a hole there."""
+    locus = root_locus(parse_transfer_function(text))
+    (left, right), (_, top) = locus.view
+    for b in locus.breakaways:
+        if left < b.s.real < right and abs(b.s.imag) < top:
+            (i,) = np.flatnonzero(locus.gains == b.K)
+            assert np.count_nonzero(locus.branches[:, i] == b.s) == 2
 
 
 @pytest.mark.parametrize("text", LOOPS)

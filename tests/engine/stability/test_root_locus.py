@@ -5,7 +5,7 @@ import pytest
 from hypothesis import assume, given
 
 from looplab.engine.errors import InvalidInput
-from looplab.engine.stability import root_locus
+from looplab.engine.stability import breakaway_points, root_locus
 from looplab.engine.systems import TransferFunction, parse_transfer_function
 from strategies import effort, systems
 
@@ -157,6 +157,22 @@ def test_breakaways_in_closed_form(text: str, breakaways: list[tuple[complex, fl
         assert any(abs(b.s - s) < 1e-9 and abs(b.K - K) < 1e-8 * K for b in found), (s, K, found)
         L = parse_transfer_function(text)
         assert abs(1 + K * L(s)) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("m", "n", "a", "b"), [(5, 5, 1, 3), (5, 2, 1, 3), (7, 3, 1, 2), (9, 6, 0.5, 2), (-3, 7, 1, 3), (3, -7, 2, 0.25)]
+)
+def test_repeated_roots_are_no_breakaways(m: int, n: int, a: float, b: float) -> None:
+    """1/((s+a)^m (s+b)^n): m/(s+a) + n/(s+b) = 0 at s = -(m b + n a)/(m+n) and nowhere else; -m: a zero."""
+    s = -(m * b + n * a) / (m + n)
+    K = -((s + a) ** m) * (s + b) ** n
+    power = {True: lambda r, k: f"(s+{r})^{k}", False: lambda r, k: "1"}
+    num = "*".join(power[k < 0](r, -k) for r, k in ((a, m), (b, n)))
+    den = "*".join(power[k > 0](r, k) for r, k in ((a, m), (b, n)))
+    found = breakaway_points(parse_transfer_function(f"{num}/({den})"))
+    assert [(x.s, x.K) for x in found] == (
+        [(pytest.approx(s, rel=1e-12), pytest.approx(K, rel=1e-12))] if K > 0 else []
+    )
 
 
 @pytest.mark.parametrize(

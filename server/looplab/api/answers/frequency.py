@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from looplab.api.answers.base import Answer, Numbers
+from looplab.api.answers.base import Answer, ComplexPair, Numbers
 
 
 class BandwidthAnswer(Answer):
@@ -15,20 +15,32 @@ class BandwidthAnswer(Answer):
 
 
 class CornerAnswer(Answer):
-    """A corner of the straight-line sketch."""
+    """A corner of the straight-line sketch: the root s (of a pair the upper one) and what it does to both lines.
+
+    Slopes are in units of 20 dB/decade; zeta is null for a real root.
+    """
 
     omega: float
-    slope_change: int
     kind: Literal["zero", "pole"]
+    s: ComplexPair
+    multiplicity: int
+    zeta: float | None
+    slope_change: int
+    phase_change_deg: float
+    phase_from: float
+    phase_to: float
 
 
 class AsymptotesAnswer(Answer):
-    """Vertices of the straight-line magnitude, and its corners."""
+    """Vertices of the straight lines of magnitude [dB] and phase [deg], and their corners."""
 
     omega: list[float]
     mag_dB: list[float]
+    phase_omega: list[float]
+    phase_deg: list[float]
     corners: list[CornerAnswer]
     initial_slope: int
+    initial_phase_deg: float
 
 
 class FrequencyAnswer(Answer):

@@ -50,6 +50,8 @@ class TimeFunction(Answer):
     y: Numbers
     truncated_at: float | None
     truncated_reason: str | None
+    simulated_t: Annotated[Numbers, Field(description="Times of the simulation beside it; empty where it has none.")]
+    simulated_y: Numbers
 
 
 class CharacterAnswer(Answer):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from looplab.api.answers.base import Answer, ComplexPair, Numbers, Reasons
+from looplab.api.answers.frequency import AsymptotesAnswer
 
 
 class SystemText(Answer):
@@ -16,7 +17,7 @@ class SystemText(Answer):
 
 
 class PlantText(SystemText):
-    """The plant, with its order and dead time [time]."""
+    """A plant (or another part of the loop), with its order and dead time [time]."""
 
     order: int
     theta: float
@@ -33,17 +34,18 @@ class VerdictPanel(Answer):
 
 
 class StepResponse(Answer):
-    """y and u after a unit step; shorter than t where the response was cut."""
+    """y and u after a unit step, shorter than t where the response was cut; y_m is what a sensor makes of y."""
 
     y: Numbers
     u: Numbers
+    y_m: Numbers | None
     final_y: float | None
     truncated_at: float | None
     truncated_reason: str | None
 
 
 class StepPanel(Answer):
-    """Responses to unit steps of the setpoint and of the load at the plant input."""
+    """Responses to unit steps of the setpoint and of the load."""
 
     key: str
     horizon: float
@@ -69,6 +71,35 @@ class BodePanel(Answer):
     C: BodeCurve | None
 
 
+class AsymptotesPanel(AsymptotesAnswer):
+    """Straight lines of the Bode diagram of L."""
+
+    key: str
+
+
+class IndentationArcAnswer(Answer):
+    """A pole of L at j omega (omega >= 0), passed on its right: the large arc of L [deg], clockwise by turn_deg."""
+
+    omega: float
+    multiplicity: int
+    start_deg: float
+    end_deg: float
+    turn_deg: float
+
+
+class BodeCriterionAnswer(Answer):
+    """Verdict by |L| < 1 at the phase crossover, whether its conditions are met, and Nyquist's verdict beside it."""
+
+    stable: bool | None
+    applies: bool
+    unmet: list[str]
+    omega_180: float | None
+    magnitude: float | None
+    nyquist_stable: bool | None
+    agrees: bool | None
+    explanation: str
+
+
 class NyquistAnswer(Answer):
     """L(j omega) for omega > 0, and Z = N + P; N and Z are null when infinite or not defined."""
 
@@ -80,6 +111,8 @@ class NyquistAnswer(Answer):
     Z: int | None
     closed_loop_stable: bool
     explanation: str
+    arcs: list[IndentationArcAnswer]
+    bode_criterion: BodeCriterionAnswer
 
 
 class NyquistPanel(NyquistAnswer):
@@ -89,11 +122,12 @@ class NyquistPanel(NyquistAnswer):
 
 
 class Branch(Answer):
-    """One branch of the locus; its k-th point belongs to gains[first + k]."""
+    """One branch of the locus; its k-th point belongs to gains[first + k], of its own gains where it has them."""
 
     first: int
     re: Numbers
     im: Numbers
+    gains: Numbers | None = None
 
 
 class Asymptotes(Answer):
@@ -133,7 +167,10 @@ class View(Answer):
 
 
 class RootLocusAnswer(Answer):
-    """Closed-loop poles over the controller's gain; only available and reason where it cannot be drawn."""
+    """Closed-loop poles over the controller's gain; only available and reason where it cannot be drawn.
+
+    In a window that was asked for, branches are pieces with gains of their own, and gains is null.
+    """
 
     available: bool
     reason: str | None
@@ -233,14 +270,36 @@ class MetricsPanel(Answer):
 
 
 class SensitivityPanel(Answer):
-    """The gang of four over omega [rad/time], magnitudes [dB]."""
+    """The gang of six over omega [rad/time], magnitudes [dB].
+
+    CFS: r to u, (C + F) S; TF: r to y, P (C + F) S, with the feedforward F = Kc (beta - 1) in
+    u = C (r - y) + F r. They are CS and T where F is zero.
+    """
 
     key: str
     omega: Numbers
     S_dB: Numbers
-    T_dB: Numbers
     PS_dB: Numbers
     CS_dB: Numbers
+    T_dB: Numbers
+    CFS_dB: Numbers
+    TF_dB: Numbers
+    feedforward: float
+
+
+class GangStepsPanel(Answer):
+    """Unit-step responses of the gang of six over t [time]; an array is shorter than t where it was cut."""
+
+    key: str
+    t: Numbers
+    S: Numbers
+    PS: Numbers
+    CS: Numbers
+    T: Numbers
+    CFS: Numbers
+    TF: Numbers
+    truncated_reason: str | None
+    feedforward: float
 
 
 class LoopPanels(Answer):
@@ -255,6 +314,9 @@ class LoopPanels(Answer):
     margins: MarginsPanel | None = None
     metrics: MetricsPanel | None = None
     sensitivity: SensitivityPanel | None = None
+    asymptotes: AsymptotesPanel | None = None
+    gang_steps: GangStepsPanel | None = None
+    root_locus_negative: RootLocusPanel | None = None
 
 
 class LoopAnswer(Answer):
@@ -263,5 +325,8 @@ class LoopAnswer(Answer):
     time_unit: str
     plant: PlantText
     controller: SystemText
+    actuator: PlantText | None
+    sensor: PlantText | None
+    disturbance: PlantText | None
     unchanged: list[str]
     panels: LoopPanels

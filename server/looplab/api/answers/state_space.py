@@ -60,6 +60,33 @@ class CancelledMode(Answer):
     stable: bool
 
 
+class RemovedModeAnswer(Answer):
+    """A mode that a minimal realisation leaves out."""
+
+    pole: ComplexPair
+    hidden_from: Annotated[Literal["input", "output"], Field(description="No input moves it, or no output shows it.")]
+    stable: bool
+
+
+class RemovedModes(Answer):
+    """What a minimal realisation leaves out, and the singular values on either side of the tolerance."""
+
+    order: int
+    removed: list[RemovedModeAnswer]
+    tolerance: float
+    smallest_kept: float | None
+    largest_removed: float | None
+
+
+class MinimalRealizationAnswer(RemovedModes):
+    """A model with the same transfer matrix in which no mode hides."""
+
+    A: Matrix
+    B: Matrix
+    C: Matrix
+    D: Matrix
+
+
 class ChannelAnswer(Answer):
     """Transfer function of one input and output, with every mode and without those that cancel; null with a reason."""
 
@@ -93,5 +120,6 @@ class StateSpaceAnswer(Answer):
     stabilizable: bool
     detectable: bool
     minimal: bool
+    minimal_realization: MinimalRealizationAnswer
     gramians: GramiansAnswer
     transfer_functions: list[ChannelAnswer]

@@ -28,6 +28,9 @@ PANELS: dict[str, Panel] = {
     "margins": Panel(frequency.margins_panel, LoopContext.loop_content),
     "metrics": Panel(time.metrics, LoopContext.step_content),
     "sensitivity": Panel(frequency.sensitivity, LoopContext.frequency_content),
+    "asymptotes": Panel(frequency.asymptotes, LoopContext.frequency_content),
+    "gang_steps": Panel(time.gang, LoopContext.step_content),
+    "root_locus_negative": Panel(stability.negative_locus, LoopContext.locus_content),
 }
 
 __all__ = ["PANELS", "LoopContext", "Panel"]

@@ -55,15 +55,17 @@ class LoopContext:
         return system * -1.0 if self.loop.gain < 0 else system
 
     def loop_content(self) -> tuple[Any, ...]:
-        """Plant and controller."""
-        return (self.loop.plant.key, self.loop.C.key, self.loop.feedforward)
+        """Everything that the loop is made of."""
+        loop = self.loop
+        others = (None if G is None else G.key for G in (loop.actuator, loop.sensor, loop.disturbance))
+        return (loop.plant.key, loop.C.key, loop.feedforward, *others)
 
     def step_content(self) -> tuple[Any, ...]:
-        """Plant, controller and time axis."""
+        """The loop and the time axis."""
         return (*self.loop_content(), self.horizon, self.points)
 
     def frequency_content(self) -> tuple[Any, ...]:
-        """Plant, controller and frequency axis."""
+        """The loop and the frequency axis."""
         return (*self.loop_content(), self.wanted_omega)
 
     def locus_content(self) -> tuple[Any, ...]:

@@ -1,4 +1,4 @@
-"""Frequency-domain panels: Bode, Nyquist, margins and the sensitivity functions."""
+"""Frequency-domain panels: Bode with its asymptotes, Nyquist, margins and the sensitivity functions."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from looplab.api.open_loop import nyquist_answer
+from looplab.api.open_loop import asymptotes_answer, nyquist_answer
 from looplab.api.panels.context import LoopContext
 from looplab.engine.frequency import margins
 from looplab.engine.frequency.sampled import Sampled, sampled
+from looplab.engine.loop.gang_of_six import GANG, gang_of_six
 
 DECIBELS = 20.0 / np.log(10.0)
 
@@ -31,6 +32,11 @@ def bode_panel(context: LoopContext) -> dict[str, Any]:
     return {"omega": L.omega, "L": _curve(L), "P": _curve(P), "C": _curve(C)}
 
 
+def asymptotes(context: LoopContext) -> dict[str, Any]:
+    """Straight lines of the Bode diagram of L over the same frequency axis."""
+    return asymptotes_answer(context.loop.open_loop, *context.omega_range)
+
+
 def nyquist(context: LoopContext) -> dict[str, Any]:
     """The Nyquist curve with N, P and Z = N + P written out."""
     return nyquist_answer(context.loop.open_loop, context.verdict.closed_loop_stable)
@@ -44,13 +50,11 @@ def margins_panel(context: LoopContext) -> dict[str, Any]:
 
 
 def sensitivity(context: LoopContext) -> dict[str, Any]:
-    """Magnitudes of S, T, PS and CS."""
-    loop, L = context.loop, context.open_loop
-    P, C = (sampled(system, *context.omega_range, loop.open_loop) for system in (loop.plant, loop.C))
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        S = -np.log(np.abs(1.0 + np.exp(L.log_magnitude + 1j * L.phase)))
-        curves = {"S": S, "T": S + L.log_magnitude, "PS": S + P.log_magnitude, "CS": S + C.log_magnitude}
+    """Magnitudes of the gang of six."""
+    gang = gang_of_six(context.loop, context.open_loop.omega)
+    curves = {name: getattr(gang, name) for name in GANG}
     # Exactly on a pole or zero of the imaginary axis a product is 0 * inf, and a system that is zero has no decibels:
     # such points are left out.
     whole = np.all([np.isfinite(value) for value in curves.values()], axis=0)
-    return {"omega": L.omega[whole], **{f"{name}_dB": value[whole] * DECIBELS for name, value in curves.items()}}
+    decibels = {f"{name}_dB": value[whole] * DECIBELS for name, value in curves.items()}
+    return {"omega": gang.omega[whole], **decibels, "feedforward": context.loop.feedforward}

@@ -13,6 +13,8 @@ from looplab.api.panels.context import LoopContext
 from looplab.engine.errors import EngineError
 from looplab.engine.stability import closed_loop_poles, root_locus
 from looplab.engine.stability.locus import Angle
+from looplab.engine.stability.locus.close_up import locus_close_up
+from looplab.engine.stability.locus.construction import Window
 from looplab.engine.systems import TransferFunction
 
 
@@ -48,18 +50,29 @@ def locus(context: LoopContext) -> dict[str, Any]:
     return locus_answer(context.locus_system)
 
 
-def locus_answer(L: TransferFunction) -> dict[str, Any]:
-    """The root locus of an open loop as it is sent."""
+def negative_locus(context: LoopContext) -> dict[str, Any]:
+    """The same for gains of the other sign: the complementary locus."""
+    return locus_answer(context.locus_system * -1.0)
+
+
+def locus_answer(L: TransferFunction, view: Window | None = None) -> dict[str, Any]:
+    """The root locus of an open loop as it is sent; in a window (re, im) only what passes it, as close as it asks."""
     try:
         result = root_locus(L)
     except EngineError as error:
         return {"available": False, "reason": error.message}
+    drawn: dict[str, Any]
+    if view is None:
+        shown = result.view
+        drawn = {"gains": result.gains, "branches": [_branch(b) for b in result.branches], "complete": result.complete}
+    else:
+        shown, close_up = view, locus_close_up(L, view)
+        pieces = [{"first": 0, "re": p.s.real.copy(), "im": p.s.imag.copy(), "gains": p.gains} for p in close_up.pieces]
+        drawn = {"gains": None, "branches": pieces, "complete": close_up.complete}
     return {
         "available": True,
         "reason": None,
-        "gains": result.gains,
-        "branches": [_branch(branch) for branch in result.branches],
-        "complete": result.complete,
+        **drawn,
         "open_loop_poles": complex_pairs(result.open_loop_poles),
         "open_loop_zeros": complex_pairs(result.open_loop_zeros),
         "asymptotes": {
@@ -72,5 +85,5 @@ def locus_answer(L: TransferFunction) -> dict[str, Any]:
         "departure_angles": [_angle(a) for a in result.departure_angles],
         "arrival_angles": [_angle(a) for a in result.arrival_angles],
         "real_axis_segments": [list(segment) for segment in result.real_axis_segments],
-        "view": {"re": list(result.view[0]), "im": list(result.view[1])},
+        "view": {"re": list(shown[0]), "im": list(shown[1])},
     }

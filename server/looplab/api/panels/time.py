@@ -6,12 +6,14 @@ from typing import Any
 
 from looplab.api.panels.context import LoopContext
 from looplab.engine.loop import Response, step_metrics
+from looplab.engine.loop.gang_of_six import GANG, gang_steps
 
 
 def _response(response: Response) -> dict[str, Any]:
     return {
         "y": response.y.copy(),
         "u": response.u.copy(),
+        "y_m": None if response.y_m is None else response.y_m.copy(),
         "final_y": response.final_y,
         "truncated_at": response.truncated_at,
         "truncated_reason": response.truncated_reason,
@@ -19,7 +21,7 @@ def _response(response: Response) -> dict[str, Any]:
 
 
 def step(context: LoopContext) -> dict[str, Any]:
-    """y and u after unit steps of setpoint and load."""
+    """y and u, and what a sensor makes of y, after unit steps of setpoint and load."""
     result = context.step
     setpoint, load = _response(result.setpoint), _response(result.load)
     if not context.verdict.closed_loop_stable:
@@ -34,4 +36,16 @@ def metrics(context: LoopContext) -> dict[str, Any]:
     return {
         "setpoint": vars(step_metrics(result.setpoint, setpoint=1.0, stable=stable)),
         "load": vars(step_metrics(result.load, setpoint=0.0, stable=stable)),
+    }
+
+
+def gang(context: LoopContext) -> dict[str, Any]:
+    """Step responses of the gang of six."""
+    steps = gang_steps(context.loop, context.horizon, context.points)
+    curves = {name: getattr(steps, name).copy() for name in GANG}
+    return {
+        "t": steps.t,
+        **curves,
+        "truncated_reason": steps.truncated_reason,
+        "feedforward": context.loop.feedforward,
     }

@@ -14,13 +14,12 @@ from looplab.api.answers.frequency import FrequencyAnswer
 from looplab.api.answers.loop import MarginsAnswer, NyquistAnswer
 from looplab.api.docs import ERRORS
 from looplab.api.encode import json_response
-from looplab.api.open_loop import EXAMPLES, OpenLoopRequest, nyquist_answer
+from looplab.api.open_loop import EXAMPLES, OpenLoopRequest, asymptotes_answer, nyquist_answer
 from looplab.api.strict import StrictRoute
 from looplab.engine.errors import InvalidInput
 from looplab.engine.frequency import (
     bandwidth,
     bode,
-    bode_asymptotes,
     closed_loop_bandwidth,
     frequency_grid,
     margins,
@@ -55,7 +54,7 @@ def frequency(request: Annotated[FrequencyRequest, Body(openapi_examples=EXAMPLE
         omega = np.array(request.omega)
         if (np.diff(omega) <= 0).any():
             raise InvalidInput("the frequencies must increase", field="omega")
-    data, lines = bode(L, omega), bode_asymptotes(L, float(omega[0]), float(max(omega[-1], omega[0] * 10)))
+    data = bode(L, omega)
     return json_response(
         {
             "omega": data.omega,
@@ -63,12 +62,7 @@ def frequency(request: Annotated[FrequencyRequest, Body(openapi_examples=EXAMPLE
             "phase_deg": data.phase_deg,
             "bandwidth": asdict(bandwidth(L)),
             "closed_loop_bandwidth": asdict(closed_loop_bandwidth(L)),
-            "asymptotes": {
-                "omega": lines.omega.tolist(),
-                "mag_dB": lines.mag_dB.tolist(),
-                "corners": [asdict(c) for c in lines.corners],
-                "initial_slope": lines.initial_slope,
-            },
+            "asymptotes": asymptotes_answer(L, float(omega[0]), float(max(omega[-1], omega[0] * 10))),
         },
         request.arrays,
     )
@@ -91,5 +85,5 @@ def stability_margins(request: Annotated[OpenLoopRequest, Body(openapi_examples=
 
 @router.post("/nyquist", summary="Nyquist curve and count", responses={200: {"model": NyquistAnswer}, **ERRORS})
 def nyquist(request: Annotated[CurveRequest, Body(openapi_examples=EXAMPLES)]) -> Response:
-    """The curve for omega > 0 (mirror it for omega < 0), and Z = N + P written out."""
+    """The curve for omega > 0 (mirror it for omega < 0), its arcs at infinity, Z = N + P, and Bode's criterion."""
     return json_response(nyquist_answer(request.open_loop(), _stable(request)), request.arrays)

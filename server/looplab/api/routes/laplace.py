@@ -102,6 +102,11 @@ def _samples(y: lap.ExponentialSum, horizon: float, points: int) -> dict[str, An
     }
 
 
+def _simulated(check: lap.SimulationCheck) -> dict[str, Any]:
+    shown = (check.t <= check.horizon) & (np.abs(check.y) < LARGEST_VALUE)
+    return {"simulated_t": check.t[shown], "simulated_y": check.y[shown]}
+
+
 def _limits(fractions: lap.PartialFractions) -> dict[str, Any]:
     found = {"initial_value": lap.initial_value(fractions), "final_value": lap.final_value(fractions)}
     return {
@@ -148,7 +153,7 @@ def laplace(request: Annotated[LaplaceRequest, Body(openapi_examples=LAPLACE_EXA
         rational, fractions, y = solution.transform, solution.fractions, solution.y
         forced, free = _time_formula(solution.forced), _time_formula(solution.free)
     horizon = request.horizon or lap.suggested_horizon(y)
-    check = lap.check_by_simulation(rational, y, horizon)
+    check = lap.check_by_simulation(rational, y, horizon, request.points)
     transform = _transform(rational)
     answer = {
         "time_unit": "s",
@@ -177,7 +182,7 @@ def laplace(request: Annotated[LaplaceRequest, Body(openapi_examples=LAPLACE_EXA
             "simulation_reason": check.reason,
         },
         "horizon": horizon,
-        "response": _samples(y, horizon, request.points),
+        "response": _samples(y, horizon, request.points) | _simulated(check),
         "character": _character(system),
     }
     return json_response(answer, request.arrays)

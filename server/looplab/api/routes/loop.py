@@ -20,8 +20,13 @@ from looplab.schemas import Loop, Model, located
 
 router = APIRouter(tags=["loop"], route_class=StrictRoute)
 
-PanelName = Literal["verdict", "step", "bode", "nyquist", "root_locus", "poles", "margins", "metrics", "sensitivity"]
-DEFAULT: list[PanelName] = list(PanelName.__args__)  # type: ignore[attr-defined]
+PanelName = Literal[
+    "verdict", "step", "bode", "nyquist", "root_locus", "poles", "margins", "metrics", "sensitivity",
+    "asymptotes", "gang_steps", "root_locus_negative",
+]  # fmt: skip
+# What explains the rest more closely is computed for those who ask for it by name.
+ON_REQUEST = ("asymptotes", "gang_steps", "root_locus_negative")
+DEFAULT: list[PanelName] = [name for name in PanelName.__args__ if name not in ON_REQUEST]  # type: ignore[attr-defined]
 
 EXAMPLE: dict[str, Any] = {
     "loop": {
@@ -49,21 +54,44 @@ class LoopRequest(Model):
 
 
 def _summary(request: LoopRequest, context: LoopContext) -> dict[str, Any]:
-    plant = context.loop.plant
-    texts: dict[str, dict[str, Any]] = {}
+    loop = context.loop
+    texts: dict[str, dict[str, Any] | None] = {}
     for name, shape, system in (
-        ("plant", request.loop.plant, plant),
-        ("controller", request.loop.controller, context.loop.C),
+        ("plant", request.loop.plant, loop.plant),
+        ("controller", request.loop.controller, loop.C),
+        ("actuator", request.loop.actuator, loop.actuator),
+        ("sensor", request.loop.sensor, loop.sensor),
+        ("disturbance", request.loop.disturbance, loop.disturbance),
     ):
+        if shape is None or system is None:
+            texts[name] = None
+            continue
         latex = shape.to_latex()
-        texts[name] = {"text": system.to_text(), "latex": latex, "mathml": render_math(latex)}
-    texts["plant"] |= {"order": plant.order, "theta": plant.theta}
+        text: dict[str, Any] = {"text": system.to_text(), "latex": latex, "mathml": render_math(latex)}
+        texts[name] = text if name == "controller" else text | {"order": system.order, "theta": system.theta}
     return texts
+
+
+ACTUATOR_AND_SENSOR: dict[str, Any] = {
+    "loop": {
+        "plant": {"type": "fopdt", "K": 1, "tau": 2, "theta": 0.5},
+        "controller": {"type": "pid", "Kc": 1.2, "tau_I": 2},
+        "actuator": {"type": "expr", "text": "exp(-0.1s)/(0.3s+1)"},
+        "sensor": {"type": "expr", "text": "exp(-0.25s)/(0.1s+1)"},
+    },
+    "want": ["verdict", "margins", "step"],
+    "horizon": 20,
+    "points": 101,
+}
+EXAMPLES: dict[str, Any] = {
+    "PI on 1/(s+1)^3": {"value": EXAMPLE},
+    "dead times in valve and sensor": {"value": ACTUATOR_AND_SENSOR},
+}
 
 
 @router.post("/loop", summary="Analyse and simulate a feedback loop", responses={200: {"model": LoopAnswer}, **ERRORS})
 def loop(
-    request: Annotated[LoopRequest, Body(openapi_examples={"PI on 1/(s+1)^3": {"value": EXAMPLE}})],
+    request: Annotated[LoopRequest, Body(openapi_examples=EXAMPLES)],
 ) -> Response:
     """Step responses, Bode, Nyquist, root locus, margins, metrics and the stability verdict of one loop.
 
@@ -88,7 +116,7 @@ def loop(
         try:
             panels[name] = {"key": key, **panel.compute(context)}
         except EngineError as error:
-            if error.field in ("plant", "controller", "theta"):
+            if error.field in ("plant", "controller", "theta", "actuator", "sensor", "disturbance"):
                 error.field = "loop.plant" if error.field == "theta" else f"loop.{error.field}"
             raise
     answer = {"time_unit": "s", **_summary(request, context), "unchanged": unchanged, "panels": panels}

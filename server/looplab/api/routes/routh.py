@@ -47,7 +47,7 @@ class RouthRequest(Model):
     tau_I: (
         Annotated[
             list[Annotated[float, Field(gt=0)]],
-            Field(min_length=1, max_length=25, description="Cuts of the stable region of a PI controller [time]."),
+            Field(min_length=1, max_length=60, description="Cuts of the stable region of a PI controller [time]."),
         ]
         | None
     ) = None
@@ -151,7 +151,7 @@ def _region(loop: FeedbackLoop, tau_I: list[float], negative: bool) -> dict[str,
             hint='{"type": "pid", "Kc": 1, "tau_I": 1}',
         )
     with located("loop"):
-        region = pi_region(loop.plant, tau_I, negative)
+        region = pi_region(loop.path, tau_I, negative)
     curve = region.boundary
     there = np.isfinite(curve.tau_I) & (negative | (curve.Kc > 0))
     return {

@@ -23,6 +23,7 @@ from looplab.engine.state_space import (
     from_ode,
     gramians,
     minimal,
+    minimal_realization,
     to_transfer_function,
 )
 from looplab.engine.systems import TransferFunction
@@ -106,6 +107,18 @@ def _text(system: TransferFunction) -> dict[str, str]:
     return {"text": system.to_text(), "latex": latex, "mathml": render_math(latex)}
 
 
+def _minimal_realization(model: StateSpaceModel, tolerance: float) -> dict[str, Any]:
+    found = minimal_realization(model, tolerance)
+    return {
+        "order": found.model.states,
+        **{name: getattr(found.model, name).tolist() for name in "ABCD"},
+        "removed": [asdict(mode) | {"pole": _pair(mode.pole)} for mode in found.removed],
+        "tolerance": found.tolerance,
+        "smallest_kept": found.smallest_kept,
+        "largest_removed": found.largest_removed,
+    }
+
+
 def _pair(value: complex) -> list[float]:
     return [value.real, value.imag]
 
@@ -137,7 +150,8 @@ def _channel(model: StateSpaceModel, output: int, input: int, tolerance: float) 
 )
 def state_space(request: Annotated[StateSpaceRequest, Body(openapi_examples=EXAMPLES)]) -> Response:
     """Poles and verdict, controllability and observability with the singular values that decide, hidden modes,
-    Gramians where they exist, and the transfer function of each channel with what cancels in it."""
+    Gramians where they exist, a minimal realisation with what it leaves out, and the transfer function of each channel
+    with what cancels in it."""
     model = request.to_engine()
     if model.inputs * model.outputs > 16:
         raise InvalidInput(
@@ -159,6 +173,7 @@ def state_space(request: Annotated[StateSpaceRequest, Body(openapi_examples=EXAM
         "stabilizable": structure.stabilizable,
         "detectable": structure.detectable,
         "minimal": structure.minimal,
+        "minimal_realization": _minimal_realization(model, request.tolerance),
         "gramians": {
             name: None if value is None else value.tolist()
             for name, value in (

@@ -19,6 +19,7 @@ from looplab.engine.frequency.response import (
 )
 from looplab.engine.frequency.sampled import Sampled, sampled
 from looplab.engine.frequency.scalar import newton_in_bracket, scalar_loop
+from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
@@ -135,6 +136,8 @@ def _phase_crossovers(L: TransferFunction, omega: FloatArray, phase: FloatArray)
 @lru_cache(maxsize=256)
 def crossings(L: TransferFunction) -> Crossings:
     """Find every crossover of the open loop L; cached by content."""
+    # On a hidden mode of the imaginary axis L is 0/0.
+    L, _ = split_hidden_modes(L)
     empty = np.zeros(0)
     grid, overrun = _search_grid(L)
     omega = grid.omega

@@ -11,7 +11,9 @@ import numpy.typing as npt
 
 from looplab.engine.frequency.crossings import OFTEN, crossings
 from looplab.engine.frequency.nyquist import nyquist_count
+from looplab.engine.frequency.response import AXIS_GAP
 from looplab.engine.frequency.scalar import illinois, scalar_loop
+from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
@@ -107,10 +109,11 @@ def _sensitivity_peaks(L: TransferFunction, omega: FloatArray) -> dict[str, floa
     if L.theta > 0 and L.relative_degree == 0:
         # The dead time turns L around a circle of radius |L(inf)| without end.
         c = abs(L.gain)
-        if c >= 1.0 or 1.0 / (1.0 - c) > Ms:
-            Ms, omega_Ms = (np.inf if c >= 1.0 else 1.0 / (1.0 - c)), np.inf
-        if c >= 1.0 or c / (1.0 - c) > Mt:
-            Mt, omega_Mt = (np.inf if c >= 1.0 else c / (1.0 - c)), np.inf
+        limit = np.inf if c == 1.0 else 1.0 / abs(1.0 - c)
+        if limit > Ms:
+            Ms, omega_Ms = limit, np.inf
+        if c * limit > Mt:
+            Mt, omega_Mt = c * limit, np.inf
     if L.origin_order > 0 and Mt <= 1.0:
         Mt, omega_Mt = 1.0, 0.0
     return {"Ms": Ms, "omega_Ms": omega_Ms, "Mt": Mt, "omega_Mt": omega_Mt}
@@ -148,10 +151,15 @@ def margins(L: TransferFunction) -> Margins:
     """
     found = crossings(L)
     count = nyquist_count(L)
+    reduced, hidden = split_hidden_modes(L)
     if found.overrun:
         why = dict.fromkeys(_NAMES, f"not computed: the dead time turns the Nyquist curve {OFTEN}")
         return Margins(False, gain_crossovers=(), phase_crossovers=(), reasons=why, **dict.fromkeys(_NAMES))
-    stable = count.Z == 0 and not count.through_minus_one
+    if L.gain == 0.0:
+        hidden = L.poles
+    # A hidden mode on the axis does not decay, and the curve does not know of it.
+    stays = bool((hidden.real >= -AXIS_GAP * np.abs(hidden)).any())
+    stable = count.Z == 0 and not count.through_minus_one and not stays
     reasons: dict[str, str] = {}
 
     listed = np.isfinite(found.phase_log_magnitude)
@@ -187,15 +195,20 @@ def margins(L: TransferFunction) -> Margins:
         else:
             reasons["delay_margin"] = "undefined: the closed loop is not stable as it is"
     else:
-        text = "infinite: the gain never reaches 1" if L.gain else "undefined: the open loop is zero"
+        text = "infinite: the gain never reaches 1"
+        if not L.gain:
+            text = "undefined: the open loop is zero"
+        elif abs(L.response(found.omega[:1])[0]) > 1.0:
+            text = "undefined: the gain never falls to 1"
         reasons |= dict.fromkeys(("PM_deg", "omega_c", "delay_margin"), text)
 
     peaks: dict[str, float | None] = (
-        dict(_sensitivity_peaks(L, found.omega)) if L.gain else dict(Ms=1.0, omega_Ms=0.0, Mt=0.0, omega_Mt=0.0)
+        dict(_sensitivity_peaks(reduced, found.omega)) if L.gain else dict(Ms=1.0, omega_Ms=0.0, Mt=0.0, omega_Mt=0.0)
     )
+    # Where one is infinite L is -1, and so is the other.
+    infinite = any(value is not None and not value < 1e8 for value in (peaks["Ms"], peaks["Mt"]))
     for name in ("Ms", "Mt"):
-        value = peaks[name]
-        if value is not None and not value < 1e8:
+        if infinite:
             peaks[name] = None
             reasons[name] = "infinite: the Nyquist curve passes through -1"
         if peaks[f"omega_{name}"] == np.inf:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -140,11 +140,14 @@ class SimulationCheck:
     """Largest difference between the formula and the simulation over the horizon, relative to the largest value.
 
     ``difference`` is None, with a reason, where the simulation cannot follow; a difference above 1e-9 has one too.
+    ``t`` and ``y``, shape (n,), are the simulation itself, dead time included [time]; empty where there is none.
     """
 
     difference: float | None
     horizon: float
     reason: str | None = None
+    t: FloatArray = field(default_factory=lambda: np.zeros(0))
+    y: FloatArray = field(default_factory=lambda: np.zeros(0))
 
 
 def check_by_simulation(rational: Rational, y: ExponentialSum, horizon: float, points: int = 400) -> SimulationCheck:
@@ -185,4 +188,4 @@ def check_by_simulation(rational: Rational, y: ExponentialSum, horizon: float, p
     relative = difference / size if size else difference
     # Poles close together, or slow ones seen at the speed of fast ones, have terms far larger than their sum.
     why = None if relative <= AGREES else "the terms are much larger than their sum: their leading digits cancel"
-    return SimulationCheck(relative, horizon, why)
+    return SimulationCheck(relative, horizon, why, simulated.t + y.theta, simulated.y)

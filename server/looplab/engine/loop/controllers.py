@@ -147,3 +147,36 @@ class PID:
             return rf"{head}\left(1 + {integral}\right){lead}" if integral else rf"{head}\,{lead}"
         terms = " + ".join(t for t in ("1", integral, rf"\frac{{{n(self.tau_D)}\,s}}{{{filtered}}}") if t)
         return rf"{head}\left({terms}\right)"
+
+
+def require_causal(C: TransferFunction) -> None:
+    """Raise ImproperSystem where a controller differentiates; an unfiltered PD or PID is named, with its filtered form.
+
+    Raises
+    ------
+    ImproperSystem
+        C has more zeros than poles.
+    """
+    ideal = _unfiltered(C)
+    if ideal is None:
+        C.require_proper("controller")
+        return
+    Kc, tau_I, tau_D = ideal
+    integral = f" + 1/({tau_I:.4g} s)" if tau_I is not None else ""
+    raise ImproperSystem(
+        "a derivative without a filter is not causal: it would need the future of the error",
+        field="controller",
+        hint=f"filter it: {Kc:.4g} (1{integral} + {tau_D:.4g} s/({0.1 * tau_D:.4g} s + 1)), the PID with alpha = 0.1",
+    )
+
+
+def _unfiltered(C: TransferFunction) -> tuple[float, float | None, float] | None:
+    """Kc, tau_I and tau_D of an ideal PD or PID without a filter; None for anything else."""
+    if C.theta or C.relative_degree != -1 or C.poles.any() or not C.gain:
+        return None
+    # Kc (1 + 1/(tau_I s) + tau_D s) = k (s^2 + b s + c)/s; without the integrator k (s + b).
+    b = float(-C.zeros.sum().real)
+    c = float(C.zeros.prod().real) if C.order else None
+    if C.order > 1 or b <= 0 or (c is not None and c <= 0):
+        return None
+    return C.gain * b, None if c is None else b / c, 1.0 / b

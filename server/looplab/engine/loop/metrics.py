@@ -173,7 +173,7 @@ def default_horizon(loop: FeedbackLoop) -> float:
     """
     from looplab.engine.frequency.crossings import crossings
 
-    P = loop.plant
+    P = loop.path
     # A lag without end (an integrator) has no time constant; unstable poles count by their speed.
     lags = [1.0 / abs(p) if p.imag == 0 else 1.0 / max(abs(p.real), 0.25 * abs(p)) for p in P.poles if p != 0]
     want = 10.0 * (sum(lags) + P.theta)

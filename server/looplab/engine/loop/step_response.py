@@ -29,7 +29,7 @@ class Response:
     """y and u after a unit step, with their slopes; cut where the values leave +-1e9.
 
     All arrays have the shape of ``t`` [time] (right-hand limits at jumps). ``truncated_at`` [time] and
-    ``truncated_reason`` are None for a whole response.
+    ``truncated_reason`` are None for a whole response. ``y_m`` is what a sensor makes of y, None without a sensor.
     """
 
     t: FloatArray
@@ -40,11 +40,12 @@ class Response:
     final_y: float | None
     truncated_at: float | None = None
     truncated_reason: str | None = None
+    y_m: FloatArray | None = None
 
 
 @dataclass(frozen=True)
 class ClosedLoopStep:
-    """Responses to a unit step of the setpoint r and of the load d (at the plant input)."""
+    """Responses to a unit step of the setpoint r and of the load d."""
 
     t: FloatArray
     horizon: float
@@ -158,12 +159,12 @@ def _final_values(loop: FeedbackLoop) -> tuple[float | None, float | None]:
 def closed_loop_step(loop: FeedbackLoop, horizon: float, points: int = 500) -> ClosedLoopStep:
     r"""y and u after unit steps of the setpoint and of the load, exact to rounding, dead time included.
 
-    .. math:: y = \frac{P C}{1 + P C}\, r + \frac{P}{1 + P C}\, d, \qquad u = C (r - y)
+    .. math:: y = \frac{P A C}{1 + L}\, r + \frac{P}{1 + L}\, d, \qquad u = C (r - H y), \qquad L = C A P H
 
     Parameters
     ----------
     loop : FeedbackLoop
-        At rest before t = 0. The controller must not have a dead time of its own.
+        At rest before t = 0. Without actuator and sensor A = H = 1; a disturbance model Gd stands for P before d.
     horizon : float
         Length of the simulation, > 0 [time].
     points : int
@@ -173,12 +174,13 @@ def closed_loop_step(loop: FeedbackLoop, horizon: float, points: int = 500) -> C
     Returns
     -------
     ClosedLoopStep
-        The load enters at the plant input. An unstable response is cut where it leaves +-1e9, with the reason.
+        The load enters at the plant input, or through Gd. An unstable response is cut where it leaves +-1e9, with
+        the reason.
 
     Raises
     ------
     InvalidInput
-        Horizon or points outside their range, dead time below a millionth of the horizon, controller dead time.
+        Horizon or points outside their range, or a dead time below a millionth of the horizon.
     NoConvergence
         The dead time is too long for the speed of the loop and the horizon.
 
@@ -186,14 +188,12 @@ def closed_loop_step(loop: FeedbackLoop, horizon: float, points: int = 500) -> C
     ----------
     .. [1] R. Bellman, K. L. Cooke, Differential-Difference Equations, Academic Press 1963, ch. 3 (method of steps).
     """
-    theta = loop.plant.theta
-    if loop.C.theta:
-        raise InvalidInput(
-            "a controller with a dead time of its own cannot be simulated here",
-            field="controller",
-            hint="move the dead time into the plant",
-        )
+    theta = loop.theta
     _check(horizon, points, theta)
+    if not loop.has_one_dead_time:
+        from looplab.engine.delays.loop_response import loop_step
+
+        return loop_step(loop, horizon, points)
     equations = loop_equations(loop)
     with np.errstate(over="ignore", invalid="ignore"):
         if theta == 0.0:

@@ -96,7 +96,8 @@ def _first_crossing(y: ExponentialSum, level: float, horizon: float) -> float | 
 def _step(system: TransferFunction, K: float | None, out: dict[str, float | None], why: dict[str, str]) -> None:
     """What is read off the exact step response: its slope at the start and its 63.2 % point."""
     y = inverse_transform(partial_fractions(system, LaplaceInput("step")))
-    out["initial_slope"] = float(y.derivative()(system.theta))
+    # Two lags start flat; the sum of exponentials would leave a rounding.
+    out["initial_slope"] = float(y.derivative()(system.theta)) if system.relative_degree < 2 else 0.0
     if system.order == 1 and not system.zeros.size and K is not None:
         out["t_63"] = system.theta + float(-1.0 / system.poles[0].real)
     elif K is None:

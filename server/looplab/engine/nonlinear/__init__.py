@@ -10,6 +10,7 @@ from looplab.engine.nonlinear.document import (
     read_document,
 )
 from looplab.engine.nonlinear.language import BUILT_IN, Limits
+from looplab.engine.nonlinear.latex import LatexEquation, latex_equations
 from looplab.engine.nonlinear.model import CompiledModel, Jacobians, compile_model
 
 __all__ = [
@@ -17,6 +18,7 @@ __all__ = [
     "CompiledModel",
     "Event",
     "Jacobians",
+    "LatexEquation",
     "Limits",
     "ModelDocument",
     "OperatingPoint",
@@ -24,5 +26,6 @@ __all__ = [
     "Setting",
     "State",
     "compile_model",
+    "latex_equations",
     "read_document",
 ]

@@ -11,7 +11,10 @@ from scipy.linalg import expm, matrix_balance
 
 from looplab.engine.errors import InvalidInput
 from looplab.engine.loop.delay_free import delay_free_response
+from looplab.engine.loop.feedback_loop import FeedbackLoop
+from looplab.engine.response.delayed_loop import delayed_loop_response
 from looplab.engine.response.inputs import InputSignal
+from looplab.engine.stability.setpoint_transfer import setpoint_transfer
 from looplab.engine.systems.polynomial import FloatArray
 from looplab.engine.systems.realization import StateSpace, realize
 from looplab.engine.systems.transfer_function import LARGEST, TransferFunction
@@ -126,7 +129,7 @@ def _check(horizon: float, points: int) -> None:
 
 
 def simulate(
-    system: TransferFunction | StateSpace,
+    system: TransferFunction | StateSpace | FeedbackLoop,
     signal: InputSignal,
     horizon: float,
     points: int = 500,
@@ -139,8 +142,9 @@ def simulate(
 
     Parameters
     ----------
-    system : TransferFunction or StateSpace
-        Proper. For a transfer function the states are those of ``realize``.
+    system : TransferFunction, StateSpace or FeedbackLoop
+        Proper. For a transfer function the states are those of ``realize``. Of a loop y after its setpoint; with dead
+        time it starts from rest, shows no states, and t may have up to twice as many samples.
     signal : InputSignal
     horizon : float
         Length of the simulation [time].
@@ -166,6 +170,9 @@ def simulate(
        395-404.
     """
     _check(horizon, points)
+    system = rational_part(system)
+    if isinstance(system, FeedbackLoop):
+        return _delayed(system, signal, horizon, points, x0)
     if isinstance(system, TransferFunction):
         theta = system.theta
         system = realize(system)
@@ -179,20 +186,42 @@ def simulate(
     with np.errstate(over="ignore", invalid="ignore"):
         stepper = _Stepper(system, signal.omega, horizon / (points - 1), signal.times.size)
         out = _march(stepper, signal.shifted(delay), state, points)
-        bad = ~(np.abs(out[:, 0]) < LARGEST_VALUE)
-    stop = int(np.argmax(bad)) if bad.any() else points
+        stop, at, why = _end(t, out[:, 0])
     late = zip(signal.times + delay, system.D * signal.areas, strict=True)
     impulses = tuple((float(at), float(area)) for at, area in late if area and at <= horizon)
-    cut = stop < points
-    return SystemResponse(
-        t,
-        signal.value(t),
-        out[:stop, 0].copy(),
-        out[:stop, 1:],
-        impulses,
-        float(t[stop]) if cut else None,
-        f"the response grows beyond {LARGEST_VALUE:g}" if cut else None,
-    )
+    return SystemResponse(t, signal.value(t), out[:stop, 0].copy(), out[:stop, 1:], impulses, at, why)
+
+
+def rational_part(
+    system: TransferFunction | StateSpace | FeedbackLoop,
+) -> TransferFunction | StateSpace | FeedbackLoop:
+    """A loop as its transfer function T where it has one; what has dead time in its feedback stays a loop."""
+    if isinstance(system, FeedbackLoop) and not (system.theta and system.open_loop.gain):
+        return setpoint_transfer(system)
+    return system
+
+
+def _end(t: FloatArray, y: FloatArray) -> tuple[int, float | None, str | None]:
+    """How many samples stay within bounds, and where and why the rest is cut off."""
+    with np.errstate(invalid="ignore"):
+        bad = ~(np.abs(y) < LARGEST_VALUE)
+    if not bad.any():
+        return t.size, None, None
+    stop = int(np.argmax(bad))
+    return stop, float(t[stop]), f"the response grows beyond {LARGEST_VALUE:g}"
+
+
+def _delayed(
+    loop: FeedbackLoop, signal: InputSignal, horizon: float, points: int, x0: npt.ArrayLike | None
+) -> SystemResponse:
+    if x0 is not None and np.any(np.asarray(x0, dtype=float)):
+        raise InvalidInput(
+            "a loop with dead time starts from rest: what is on its way is part of its state", field="initial"
+        )
+    with np.errstate(over="ignore", invalid="ignore"):
+        t, y = delayed_loop_response(loop, signal, horizon, points)
+    stop, at, why = _end(t, y)
+    return SystemResponse(t, signal.value(t), y[:stop], np.zeros((stop, 0)), (), at, why)
 
 
 def _march(stepper: _Stepper, signal: InputSignal, x0: FloatArray, points: int) -> FloatArray:

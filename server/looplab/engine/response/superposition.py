@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from looplab.engine.errors import InvalidInput
-from looplab.engine.response.inputs import InputSignal, impulse, step
-from looplab.engine.response.simulate import simulate
+from looplab.engine.loop.feedback_loop import FeedbackLoop
+from looplab.engine.response.inputs import InputSignal, step
+from looplab.engine.response.simulate import rational_part, simulate
 from looplab.engine.systems.polynomial import FloatArray
 from looplab.engine.systems.realization import StateSpace
 from looplab.engine.systems.transfer_function import TransferFunction
@@ -55,7 +56,7 @@ class Superposition:
 
 
 def superposition(
-    system: TransferFunction | StateSpace,
+    system: TransferFunction | StateSpace | FeedbackLoop,
     signal: InputSignal,
     horizon: float,
     points: int = 500,
@@ -153,7 +154,7 @@ class Convolution:
 
 
 def convolution(
-    system: TransferFunction | StateSpace,
+    system: TransferFunction | StateSpace | FeedbackLoop,
     signal: InputSignal,
     horizon: float,
     points: int = 500,
@@ -195,12 +196,17 @@ def convolution(
     width = horizon / slices
     times = ((np.arange(slices) + 0.5) * width).astype(float)
     weights = signal.value(times) * width
-    train = InputSignal(times, np.zeros((slices, 2)), weights)
+    # A frequency that nothing has keeps the time axis that of the exact response.
+    train = InputSignal(times, np.zeros((slices, 2)), weights, signal.omega)
+    single = InputSignal(np.zeros(1), np.zeros((1, 2)), np.ones(1), signal.omega)
     total, h = (
         simulate(system, train, horizon, points, None, theta),
-        simulate(system, impulse(), horizon, points, None, theta),
+        simulate(system, single, horizon, points, None, theta),
     )
-    if isinstance(system, TransferFunction):
+    system = rational_part(system)
+    if isinstance(system, FeedbackLoop):
+        theta, feedthrough = system.theta, 0.0
+    elif isinstance(system, TransferFunction):
         theta, feedthrough = system.theta, system.high_frequency_gain
     else:
         theta, feedthrough = theta or 0.0, system.D

@@ -18,6 +18,7 @@ from looplab.engine.stability.minimal_modes import state_space_bibo
 from looplab.engine.stability.notions import Mode, StabilityNotion, matrix_stability, system_stability
 from looplab.engine.stability.pi_region import PIBoundary, PIRegion, pi_boundary, pi_gain_ranges, pi_region
 from looplab.engine.stability.routh import RouthArray, RouthRow, routh_array
+from looplab.engine.stability.setpoint_transfer import setpoint_transfer
 
 __all__ = [
     "BIBO",
@@ -54,6 +55,7 @@ __all__ = [
     "pi_region",
     "root_locus",
     "routh_array",
+    "setpoint_transfer",
     "state_space_bibo",
     "system_stability",
 ]

@@ -46,7 +46,8 @@ class Verdict:
 
 
 def _sorted(poles: ComplexArray) -> ComplexArray:
-    return poles[np.lexsort((poles.imag, np.round(poles.real, 9)))[::-1]]
+    """Rightmost first; of those above one another the slowest first."""
+    return poles[np.lexsort((-poles.imag, np.abs(poles.imag), -np.round(poles.real, 9)))]
 
 
 def _dead_time_poles(loop: FeedbackLoop) -> ComplexArray:
@@ -55,7 +56,7 @@ def _dead_time_poles(loop: FeedbackLoop) -> ComplexArray:
     found = crossings(L)
     fastest = float(found.gain_omega.max(initial=0.0))
     nodes = int(min(20 + np.ceil(1.5 * theta * fastest), 120))
-    candidates = np.linalg.eigvals(delay_line_matrix(loop_equations(loop), theta, nodes)).astype(complex)
+    candidates = np.linalg.eigvals(delay_line_matrix(loop_equations(loop.lumped), theta, nodes)).astype(complex)
     # The collocation resolves about half a wave per node; what it cannot resolve is noise.
     candidates = candidates[(np.abs(candidates.imag) * theta < 0.75 * nodes) & (candidates.imag >= 0)]
     # Beyond the collocation's reach each phase crossover has a pole close by.
@@ -91,7 +92,7 @@ def _distinct(poles: ComplexArray) -> ComplexArray:
 
 @lru_cache(maxsize=128)
 def closed_loop_poles(loop: FeedbackLoop) -> ClosedLoopPoles:
-    r"""Roots of 1 + P(s) C(s) = 0, hidden (cancelled) modes included.
+    r"""Roots of 1 + L(s) = 0, hidden (cancelled) modes included.
 
     Parameters
     ----------
@@ -108,8 +109,11 @@ def closed_loop_poles(loop: FeedbackLoop) -> ClosedLoopPoles:
     ----------
     .. [1] D. Breda, S. Maset, R. Vermiglio, SIAM J. Sci. Comput. 27 (2005) 482-495 (pseudospectral collocation).
     """
-    if loop.theta == 0.0 or loop.open_loop.gain == 0.0:
-        poles = np.linalg.eigvals(loop_equations(loop).closed_loop_matrix()).astype(complex)
+    if loop.open_loop.gain == 0.0:
+        # The loop is cut: the poles of plant and controller stay where they are.
+        return ClosedLoopPoles(_sorted(loop.open_loop.poles), True)
+    if loop.theta == 0.0:
+        poles = np.linalg.eigvals(loop_equations(loop.lumped).closed_loop_matrix()).astype(complex)
         polished, good = polish_closed_loop_poles(loop.open_loop, poles, steps=2)
         return ClosedLoopPoles(_sorted(np.where(good, polished, poles)), True)
     reason = "dead time makes infinitely many closed-loop poles; the rightmost are listed"
@@ -127,9 +131,10 @@ def _pole_text(p: complex) -> str:
     return f"{_number(p.real)} ± {_number(abs(p.imag))}j"
 
 
-def _verdict_from_poles(poles: ComplexArray) -> Verdict:
+def verdict_from_poles(poles: ComplexArray, noun: str = "closed-loop pole", whole: str = "loop") -> Verdict:
+    """The verdict where all poles are known; ``noun`` and ``whole`` say of what."""
     if not poles.size:
-        return Verdict("stable", True, "the loop has no dynamics: it answers at once", 0)
+        return Verdict("stable", True, f"the {whole} has no dynamics: it answers at once", 0)
     # Eigenvalues of a cluster of m equal poles scatter by about eps^(1/m); a pole at the origin needs a scale.
     scale = np.maximum(np.abs(poles), 1e-3 * np.abs(poles).max())
     relative = poles.real / np.maximum(scale, 1e-300)
@@ -137,7 +142,7 @@ def _verdict_from_poles(poles: ComplexArray) -> Verdict:
     axis = poles[np.abs(relative) <= AXIS_TOLERANCE]
     if right.size:
         worst = right[np.argmax(right.real)]
-        many = f"{right.size} closed-loop poles lie" if right.size > 1 else "a closed-loop pole lies"
+        many = f"{right.size} {noun}s lie" if right.size > 1 else f"a {noun} lies"
         return Verdict(
             "unstable",
             False,
@@ -146,19 +151,19 @@ def _verdict_from_poles(poles: ComplexArray) -> Verdict:
         )
     if axis.size:
         if any(np.count_nonzero(np.abs(axis - p) < 1e-6 * max(abs(p), 1e-6)) > 1 for p in axis):
-            return Verdict("unstable", False, "a repeated closed-loop pole lies on the imaginary axis", 0)
+            return Verdict("unstable", False, f"a repeated {noun} lies on the imaginary axis", 0)
         at = axis[np.argmax(axis.imag)]
         what = (
-            "a closed-loop pole lies at the origin"
+            f"a {noun} lies at the origin"
             if abs(at) < 1e-12
             else (
-                f"a pair of closed-loop poles lies on the imaginary axis at ±{_number(abs(at.imag))}j: "
-                "the loop oscillates without end"
+                f"a pair of {noun}s lies on the imaginary axis at ±{_number(abs(at.imag))}j: "
+                f"the {whole} oscillates without end"
             )
         )
         return Verdict("marginal", False, what, 0)
     slowest = poles[np.argmax(poles.real)]
-    many = f"all {poles.size} closed-loop poles lie" if poles.size > 1 else "the closed-loop pole lies"
+    many = f"all {poles.size} {noun}s lie" if poles.size > 1 else f"the {noun} lies"
     return Verdict("stable", True, f"{many} in the left half-plane; the rightmost at {_pole_text(slowest)}", 0)
 
 
@@ -177,7 +182,7 @@ def closed_loop_verdict(loop: FeedbackLoop) -> Verdict:
         from Nyquist's count on the exact open loop, worded with the rightmost pole.
     """
     if loop.theta == 0.0 or loop.open_loop.gain == 0.0:
-        return _verdict_from_poles(closed_loop_poles(loop).poles)
+        return verdict_from_poles(closed_loop_poles(loop).poles)
     L = loop.open_loop
     count = nyquist_count(L)
     poles = closed_loop_poles(loop).poles

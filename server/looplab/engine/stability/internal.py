@@ -153,7 +153,7 @@ def internal_stability(loop: FeedbackLoop) -> InternalStability:
     Parameters
     ----------
     loop : FeedbackLoop
-        Dead time exact: the verdict is then Nyquist's.
+        Dead time exact: the verdict is then Nyquist's. Actuator, plant and sensor count as one plant.
 
     Returns
     -------
@@ -164,7 +164,7 @@ def internal_stability(loop: FeedbackLoop) -> InternalStability:
     ----------
     .. [1] K. J. Åström, R. M. Murray, Feedback Systems, 2nd ed., Princeton University Press 2021, sec. 12.1.
     """
-    P, C = loop.plant, loop.C
+    P, C = loop.path, loop.C
     zp, pp, own_p = cancel(P.zeros, P.poles)
     zc, pc, own_c = cancel(C.zeros, C.poles)
     zc_left, pp_left, by_controller = cancel(zc, pp)

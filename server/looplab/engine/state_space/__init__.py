@@ -11,6 +11,7 @@ from looplab.engine.state_space.controllability import (
 from looplab.engine.state_space.from_ode import from_ode, initial_state
 from looplab.engine.state_space.gramians import Gramians, gramians
 from looplab.engine.state_space.interop import from_control, to_control
+from looplab.engine.state_space.minimal_realization import MinimalRealization, RemovedMode, minimal_realization
 from looplab.engine.state_space.model import StateSpaceModel
 from looplab.engine.state_space.to_transfer_function import (
     Cancellation,
@@ -24,8 +25,10 @@ __all__ = [
     "Cancellation",
     "Gramians",
     "MinimalForm",
+    "MinimalRealization",
     "Mode",
     "RankTest",
+    "RemovedMode",
     "StateSpaceModel",
     "StructureAnalysis",
     "analyse_structure",
@@ -36,6 +39,7 @@ __all__ = [
     "initial_state",
     "invariant_zeros",
     "minimal",
+    "minimal_realization",
     "observability_matrix",
     "to_control",
     "to_transfer_function",

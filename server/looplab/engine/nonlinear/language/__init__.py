@@ -6,7 +6,7 @@ from looplab.engine.nonlinear.language.derivatives import Differentiator
 from looplab.engine.nonlinear.language.diagnosis import evaluate, explain
 from looplab.engine.nonlinear.language.graph import Graph
 from looplab.engine.nonlinear.language.limits import BUILT_IN, Limits
-from looplab.engine.nonlinear.language.printer import to_latex, to_text
+from looplab.engine.nonlinear.language.printer import latex_name, to_latex, to_text
 from looplab.engine.nonlinear.language.syntax import Node, parse_condition, parse_expression
 
 __all__ = [
@@ -24,6 +24,7 @@ __all__ = [
     "compile_function",
     "evaluate",
     "explain",
+    "latex_name",
     "nearest_hint",
     "parse_condition",
     "parse_expression",

@@ -56,11 +56,29 @@ def to_latex(node: Node, symbols: Mapping[str, str]) -> str:
     ----------
     node : Node
     symbols : mapping
-        LaTeX of the names; a name that is missing is set upright.
+        LaTeX of the names; a name that is missing is made from its letters.
     """
+    return _latex(_signs_in_front(node), symbols)
 
+
+def _signs_in_front(node: Node) -> Node:
+    """The same formula with minus signs drawn out of products and fractions, and into sums."""
+    args = tuple(_signs_in_front(arg) for arg in node.args)
+    bare = tuple(arg.args[0] if arg.kind == "neg" else arg for arg in args)
+    negative = [arg.kind == "neg" for arg in args]
+    if node.kind in ("*", "/") and any(negative):
+        product = Node(node.kind, bare)
+        return product if all(negative) else Node("neg", (product,))
+    if node.kind in ("+", "-") and negative[1]:
+        return Node("-" if node.kind == "+" else "+", (args[0], bare[1]))
+    if node.kind == "neg" and negative[0]:
+        return bare[0]
+    return Node(node.kind, args, node.value, node.name)
+
+
+def _latex(node: Node, symbols: Mapping[str, str]) -> str:
     def write(child: Node) -> str:
-        return to_latex(child, symbols)
+        return _latex(child, symbols)
 
     def inner(child: Node, least: int) -> str:
         text = write(child)
@@ -70,11 +88,11 @@ def to_latex(node: Node, symbols: Mapping[str, str]) -> str:
     if kind == "number":
         return _latex_number(node.value)
     if kind == "name":
-        return r"\pi" if node.name == "pi" else symbols.get(node.name) or _latex_name(node.name)
+        return r"\pi" if node.name == "pi" else symbols.get(node.name) or latex_name(node.name)
     if kind == "call":
         return _latex_call(node, symbols)
     if kind == "neg":
-        return f"-{inner(args[0], _SIGN)}"
+        return f"-{inner(args[0], _PRODUCT)}"
     if kind == "/":
         return rf"\frac{{{write(args[0])}}}{{{write(args[1])}}}"
     if kind == "^":
@@ -91,13 +109,13 @@ def to_latex(node: Node, symbols: Mapping[str, str]) -> str:
 
 
 def _latex_base(node: Node, symbols: Mapping[str, str]) -> str:
-    text = to_latex(node, symbols)
+    text = _latex(node, symbols)
     bare = node.kind == "name" or (node.kind == "number" and "cdot" not in text)
     return f"{{{text}}}" if bare else rf"\left({text}\right)"
 
 
 def _latex_call(node: Node, symbols: Mapping[str, str]) -> str:
-    written = [to_latex(arg, symbols) for arg in node.args]
+    written = [_latex(arg, symbols) for arg in node.args]
     if node.name == "exp":
         return f"e^{{{written[0]}}}"
     if node.name == "sqrt":
@@ -116,7 +134,7 @@ def _latex_call(node: Node, symbols: Mapping[str, str]) -> str:
 def _starts_with_number(node: Node) -> bool:
     while node.kind in ("*", "^"):
         node = node.args[0]
-    return node.kind in ("number", "neg")
+    return node.kind == "number"
 
 
 def _latex_number(value: float) -> str:
@@ -128,7 +146,8 @@ def _latex_number(value: float) -> str:
     return power if mantissa == "1" else rf"{mantissa} \cdot {power}"
 
 
-def _latex_name(name: str) -> str:
+def latex_name(name: str) -> str:
+    """LaTeX of a name that has no symbol of its own: the part after the first _ as an index."""
     first, _, rest = name.partition("_")
     if not first:
         rest = rest.strip("_")

@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from looplab.engine.errors import EngineError, InvalidInput, NonFinite
 from looplab.engine.nonlinear.document import check_range
+from looplab.engine.nonlinear.inputs import SAME_TIME, InputCourse
 from looplab.engine.nonlinear.language import Values
 from looplab.engine.nonlinear.model import CompiledModel
-from looplab.engine.nonlinear.simulation.inputs import SAME_TIME, InputCourse
 from looplab.engine.nonlinear.simulation.result import EventRecord, Simulation
 from looplab.engine.nonlinear.simulation.right_hand_side import RightHandSide, RunsAway
 from looplab.engine.nonlinear.simulation.solvers import (

@@ -8,9 +8,9 @@ from contextlib import suppress
 import numpy as np
 
 from looplab.engine.errors import EngineError, NonFinite
+from looplab.engine.nonlinear.inputs import InputCourse
 from looplab.engine.nonlinear.language import Values
 from looplab.engine.nonlinear.model import CompiledModel
-from looplab.engine.nonlinear.simulation.inputs import InputCourse
 from looplab.engine.nonlinear.simulation.solvers import Counter
 from looplab.engine.nonlinear.simulation.watch import LARGEST_STATE
 from looplab.engine.systems.polynomial import FloatArray

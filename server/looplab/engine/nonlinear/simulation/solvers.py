@@ -14,7 +14,7 @@ from looplab.engine.systems.polynomial import FloatArray
 
 METHODS = ("LSODA", "RK45", "Radau", "BDF")
 # Work per evaluation of the model, in evaluations by LSODA: the others are written in Python.
-WEIGHTS = {"LSODA": 1, "RK45": 6, "Radau": 12, "BDF": 20}
+WEIGHTS = {"LSODA": 1, "RK45": 6, "Radau": 10, "BDF": 30}
 _CLASSES: dict[str, Any] = {"RK45": RK45, "Radau": Radau, "BDF": BDF}
 # Times closer than this part of them are the same to a solver.
 _NO_TIME = 1e-14

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
 from scipy.optimize import brentq
 
 from looplab.engine.nonlinear.model import CompiledModel
@@ -18,8 +17,8 @@ _BOUND_SLACK = 1e-9
 # An event as near as this part of its largest value is reached, where the equations end there.
 _REACHED = 1e-6
 
-# Signs of all watched quantities at (t, x): positive is on.
-Measure = Callable[[float, FloatArray], FloatArray]
+# Values of all that is watched at (t, x): positive is on.
+Measure = Callable[[float, FloatArray], list[float]]
 
 
 @dataclass(frozen=True)
@@ -73,28 +72,31 @@ class Watch:
         for state in document.states:
             message = f"{state.name} grows beyond {LARGEST_STATE:g}: it runs away"
             self.watched.append(Watched(state.name, message, True, False, True))
-        self.largest = np.zeros(len(self.watched))
+        self.strict = [each.strict for each in self.watched]
+        self.largest = [0.0] * len(self.watched)
 
-    def measure(self, t: float, x: FloatArray) -> FloatArray:
+    def measure(self, t: float, x: FloatArray) -> list[float]:
         """Values of all that is watched, positive where it is on."""
         values = x.tolist()
-        events = self.model.events(t, values, self.u(t), self.p)
-        bounds = [sign * values[index] - end for index, sign, end in self.bounds]
-        out = np.array([*events, *bounds, *(np.abs(x) - LARGEST_STATE)])
-        self.largest = np.maximum(self.largest, np.abs(out))
+        out = [
+            *(self.model.events(t, values, self.u(t), self.p) if self.model.document.events else ()),
+            *(sign * values[index] - end for index, sign, end in self.bounds),
+            *(abs(value) - LARGEST_STATE for value in values),
+        ]
+        self.largest = [max(abs(value), seen) for value, seen in zip(out, self.largest, strict=True)]
         return out
 
-    def on(self, values: FloatArray) -> list[bool]:
+    def on(self, values: list[float]) -> list[bool]:
         """Which are on."""
-        return [
-            bool(value > 0.0 or (value == 0.0 and not each.strict))
-            for value, each in zip(values, self.watched, strict=True)
-        ]
+        return [value > 0.0 or (value == 0.0 and not strict) for value, strict in zip(values, self.strict, strict=True)]
 
-    def near(self, values: FloatArray) -> list[int]:
+    def near(self, values: list[float]) -> list[int]:
         """Those that stop a simulation and are off by no more than rounding, seen from where they have been."""
-        close = np.abs(values) <= _REACHED * self.largest
-        return [index for index, each in enumerate(self.watched) if each.stops and close[index]]
+        return [
+            index
+            for index, each in enumerate(self.watched)
+            if each.stops and abs(values[index]) <= _REACHED * self.largest[index]
+        ]
 
 
 def crossing(state_at: Callable[[float], FloatArray], measure: Measure, index: int, span: tuple[float, float]) -> float:
@@ -117,7 +119,7 @@ def crossing(state_at: Callable[[float], FloatArray], measure: Measure, index: i
     """
 
     def value(t: float) -> float:
-        return float(measure(t, state_at(t))[index])
+        return measure(t, state_at(t))[index]
 
     first, last = value(span[0]), value(span[1])
     # Off at exactly zero (a strict comparison), or on by a hair that the repeated integration does not see.

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from looplab.engine.frequency.crossings import crossings
 from looplab.engine.systems.hidden_modes import split_hidden_modes
-from looplab.engine.systems.polynomial import from_roots, roots
+from looplab.engine.systems.polynomial import roots
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
@@ -187,38 +187,52 @@ def breakaway_points(L: TransferFunction) -> tuple[Breakaway, ...]:
     L, _ = split_hidden_modes(L)
     if not L.order:
         return ()
-    # In units of a typical root: expanded in other units the coefficients spread over hundreds of decades.
-    sizes = np.abs(np.concatenate([L.zeros, L.poles]))
-    unit = float(np.exp(np.mean(np.log(sizes[sizes > 0])))) if (sizes > 0).any() else 1.0
-    N, D = from_roots(L.zeros / unit), from_roots(L.poles / unit)
-    turning: FloatArray = np.polysub(np.polymul(np.polyder(D), N), np.polymul(np.polyder(N), D))
-    turning = np.polyadd(turning, L.theta * unit * np.polymul(N, D))
-    candidates = unit * roots(turning)
+    roots_, weights = _distinct_roots(L)
+    points = _turning_points(roots_, weights, L.theta)
+    with np.errstate(all="ignore"):
+        points = _newton_on_turning(points, roots_, weights, L.theta)
+        terms = weights / (points[:, None] - roots_)
+        turning = np.abs(terms.sum(axis=1) - L.theta) <= 1e-9 * (np.abs(terms).sum(axis=1) + L.theta)
+        gains = -1.0 / L(points)
+    found = turning & np.isfinite(gains) & (gains.real > 0) & (np.abs(gains.imag) < 1e-7 * np.abs(gains))
     out: list[Breakaway] = []
-    repeated = L.poles[[np.count_nonzero(L.poles == p) > 1 for p in L.poles]]
-    for s in candidates:
-        s = _newton_on_log_derivative(L, s)
-        if repeated.size and np.min(np.abs(repeated - s)) < 1e-5 * max(1.0, abs(s)):
-            continue
-        value = L(s)
-        if not (np.isfinite(value) and value != 0):
-            continue
-        K = -1.0 / value
-        fresh = all(abs(b.s - s) > 1e-6 * max(1.0, abs(s)) for b in out)
-        if K.real > 0 and abs(K.imag) < 1e-7 * abs(K) and fresh:
-            out.append(Breakaway(complex(s.real, 0.0 if abs(s.imag) < 1e-9 * abs(s) else s.imag), float(K.real)))
+    for s, K in zip(points[found].tolist(), gains[found].real.tolist(), strict=True):
+        if all(abs(b.s - s) > 1e-6 * max(1.0, abs(s)) for b in out):
+            out.append(Breakaway(complex(s.real, 0.0 if abs(s.imag) < 1e-9 * abs(s) else s.imag), K))
     return tuple(sorted(out, key=lambda b: b.K))
 
 
-def _newton_on_log_derivative(L: TransferFunction, s: complex) -> complex:
-    for _ in range(4):
-        with np.errstate(all="ignore"):
-            f = complex(L.log_derivative(np.array([s]))[0])
-            slope = (-1.0 / (s - L.zeros) ** 2).sum() + (1.0 / (s - L.poles) ** 2).sum()
-            step = np.divide(f, slope)
-        if not np.isfinite(step) or abs(step) > 0.1 * max(abs(s), 1e-6):
-            break
-        s = s - step
+def _distinct_roots(L: TransferFunction) -> tuple[ComplexArray, FloatArray]:
+    """The roots of L, each once, and their multiplicities: positive for zeros, negative for poles."""
+    zeros, zero_count = np.unique(L.zeros, return_counts=True)
+    poles, pole_count = np.unique(L.poles, return_counts=True)
+    return np.concatenate([zeros, poles]), np.concatenate([zero_count, -pole_count]).astype(float)
+
+
+def _turning_points(roots_: ComplexArray, weights: FloatArray, theta: float) -> ComplexArray:
+    """Approximate zeros of sum w/(s - r) - theta: multiplied out with each root once, so that none stays multiple."""
+    # In units of a typical root: expanded in other units the coefficients spread over hundreds of decades.
+    sizes = np.abs(roots_)
+    unit = float(np.exp(np.mean(np.log(sizes[sizes > 0])))) if (sizes > 0).any() else 1.0
+    scaled = roots_ / unit
+    n = scaled.size
+    others = np.zeros((n, n + 1), dtype=complex)  # row i holds prod(s - r) without r_i, multiplied out
+    others[:, -1] = 1.0
+    for j, r in enumerate(scaled):
+        grown = np.roll(others, -1, axis=1) - r * others
+        others = np.where(np.arange(n)[:, None] == j, others, grown)
+    turning = weights @ others
+    turning -= theta * unit * np.poly(scaled)
+    return unit * roots(turning.real)
+
+
+def _newton_on_turning(s: ComplexArray, roots_: ComplexArray, weights: FloatArray, theta: float) -> ComplexArray:
+    """Newton on (L'/L) prod(s - r), which has no poles, in factored form."""
+    for _ in range(6):
+        inverse = 1.0 / (s[:, None] - roots_)
+        f = inverse @ weights - theta
+        step = f / (f * inverse.sum(axis=1) - inverse**2 @ weights)
+        s = s - np.where(np.abs(step) <= 0.1 * np.abs(s) + 1e-7, step, 0.0)
     return s
 
 

@@ -8,7 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from looplab.engine.stability.delay_line import chebyshev_differentiation
+from looplab.engine.stability.locus.construction import Breakaway
 from looplab.engine.stability.locus.count import count_in_rectangle
+from looplab.engine.stability.locus.meeting import meet
+from looplab.engine.stability.locus.near_roots import poles_near_roots
 from looplab.engine.stability.polish import polish_closed_loop_poles
 from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.realization import realize
@@ -20,6 +23,8 @@ ComplexArray = npt.NDArray[np.complex128]
 MAX_NODES = 110
 MAX_GAINS = 400
 CHECKS = 5
+# A branch moves less than this from one gain to the next [size of the picture].
+GATE = 0.3
 
 
 @dataclass(frozen=True)
@@ -38,28 +43,36 @@ class Rectangle:
 class Collocation:
     """The loop with its dead time as a delay line at Chebyshev points: M0 + K M1 has eigenvalues near the poles."""
 
-    def __init__(self, L: TransferFunction, nodes: int) -> None:
+    def __init__(self, L: TransferFunction, nodes: int, careful: bool = False) -> None:
         ss = realize(L)
         n = ss.B.size
         D = chebyshev_differentiation(nodes) / L.theta
         self.L = L
+        self.careful = careful
         self.fixed = np.zeros((n + nodes, n + nodes))
         self.fixed[:n, :n] = ss.A
         self.fixed[n:, n:] = -D[1:, 1:]
-        self.fixed[n:, :n] = -np.outer(D[1:, 0], ss.C)
+        # The line carries y in units that make C of size 1: balancing alone does not undo a large gain.
+        unit = float(np.linalg.norm(ss.C)) or 1.0
+        self.fixed[n:, :n] = -np.outer(D[1:, 0], ss.C / unit)
         self.per_gain = np.zeros_like(self.fixed)
-        self.per_gain[:n, -1] = -ss.B
+        self.per_gain[:n, -1] = -ss.B * unit
         self.per_gain[n:, -1] += D[1:, 0] * ss.D
 
     def poles(self, gains: FloatArray, inside: Rectangle) -> list[ComplexArray]:
-        """Exact closed-loop poles in the rectangle, for each gain."""
+        """Exact closed-loop poles in the rectangle, for each gain; where ``careful``, those near roots of L anew."""
         M = self.fixed + gains[:, None, None] * self.per_gain
         found = np.linalg.eigvals(M).astype(complex)
         near = np.abs(found) < 2.0 * (np.hypot(max(abs(inside.left), inside.right), inside.top))
         found = np.where(near, found, np.nan)
         polished, good = polish_closed_loop_poles(self.L, found, gains[:, None], steps=6)
         good &= inside.contains(polished)
-        return [_distinct(row[ok]) for row, ok in zip(polished, good, strict=True)]
+        rows = [_distinct(row[ok]) for row, ok in zip(polished, good, strict=True)]
+        for near in poles_near_roots(self.L, gains) if self.careful else ():
+            for k in np.flatnonzero(np.isfinite(near.poles).all(axis=1)):
+                new = near.poles[k][inside.contains(near.poles[k])]
+                rows[k] = np.concatenate([rows[k][np.abs(rows[k] - near.root) > near.radius], new])
+        return rows
 
 
 def _distinct(poles: ComplexArray) -> ComplexArray:
@@ -129,7 +142,7 @@ def _coarse(branches: ComplexArray, size: float) -> npt.NDArray[np.bool_]:
 
 
 def dead_time_branches(
-    L: TransferFunction, gains: FloatArray, inside: Rectangle, size: float
+    L: TransferFunction, gains: FloatArray, breaks: tuple[Breakaway, ...], inside: Rectangle, size: float
 ) -> tuple[FloatArray, ComplexArray, bool]:
     """Branches inside a rectangle.
 
@@ -139,6 +152,8 @@ def dead_time_branches(
         Open loop for K = 1 with dead time.
     gains : ndarray
         Increasing from 0; more are added where a branch jumps or turns.
+    breaks : tuple of Breakaway
+        Where branches meet.
     inside : Rectangle
         Where poles are followed.
     size : float
@@ -154,28 +169,40 @@ def dead_time_branches(
     """
     L, hidden = split_hidden_modes(L)
     nodes = int(min(12 + np.ceil(L.theta * np.hypot(inside.top, inside.left)), MAX_NODES))
-    line = Collocation(L, nodes)
-    if not _proved(line, gains[gains > 0], inside):
-        line = Collocation(L, min(2 * nodes, MAX_NODES))
     positive = gains[gains > 0]
-    rows = line.poles(positive, inside)
-    gate = 0.3 * size
-    for _ in range(4):
-        branches = _join(L, positive, rows, gate)
-        coarse = _coarse(branches, size)
-        if not coarse.any() or positive.size > MAX_GAINS:
-            break
-        extra = np.sqrt(positive[:-1][coarse] * positive[1:][coarse])
-        rows += line.poles(extra, inside)
-        positive = np.concatenate([positive, extra])
-        order = np.argsort(positive, kind="stable")
-        positive, rows = positive[order], [rows[k] for k in order]
-    proved = _proved(line, positive, inside)
+    line = Collocation(L, nodes)
+    careful = Collocation(L, min(2 * nodes, MAX_NODES), careful=True)
+    if not _proved(line, positive, inside):
+        line = careful
+    fine, rows = _follow(line, positive, inside, size)
+    proved = _proved(line, fine, inside)
+    if not proved and line is not careful:
+        fine, rows = _follow(careful, positive, inside, size)
+        proved = _proved(careful, fine, inside)
+    near = [b for b in breaks if inside.contains(np.array([b.s]))[0]]
+    rows = [meet(L, K, row, near) for K, row in zip(fine.tolist(), rows, strict=True)]
     start = L.poles[inside.contains(L.poles)]
-    gains = np.concatenate([[0.0], positive])
-    branches = _join(L, gains, [start.astype(complex), *rows], gate)
+    gains = np.concatenate([[0.0], fine])
+    branches = _join(L, gains, [start.astype(complex), *rows], GATE * size)
     stay = np.tile(hidden[inside.contains(hidden)][:, None], (1, gains.size))
     return gains, np.concatenate([branches, stay]), proved
+
+
+def _follow(
+    line: Collocation, gains: FloatArray, inside: Rectangle, size: float
+) -> tuple[FloatArray, list[ComplexArray]]:
+    """Gains, more of them where a branch jumps or turns, and the poles at each."""
+    rows = line.poles(gains, inside)
+    for _ in range(4):
+        coarse = _coarse(_join(line.L, gains, rows, GATE * size), size)
+        if not coarse.any() or gains.size > MAX_GAINS:
+            break
+        extra = np.sqrt(gains[:-1][coarse] * gains[1:][coarse])
+        rows += line.poles(extra, inside)
+        gains = np.concatenate([gains, extra])
+        order = np.argsort(gains, kind="stable")
+        gains, rows = gains[order], [rows[k] for k in order]
+    return gains, rows
 
 
 def _proved(line: Collocation, gains: FloatArray, inside: Rectangle) -> bool:

@@ -5,7 +5,11 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from looplab.engine.stability.locus.construction import Breakaway
+from looplab.engine.stability.locus.meeting import meet
+from looplab.engine.stability.locus.near_roots import poles_near_roots
 from looplab.engine.stability.polish import polish_closed_loop_poles
+from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.realization import realize
 from looplab.engine.systems.transfer_function import TransferFunction
 
@@ -15,7 +19,7 @@ ComplexArray = npt.NDArray[np.complex128]
 MAX_GAINS = 700
 
 
-def _poles_at(L: TransferFunction, gains: FloatArray) -> ComplexArray:
+def _poles_at(L: TransferFunction, gains: FloatArray, breaks: tuple[Breakaway, ...]) -> ComplexArray:
     """Closed-loop poles for each gain, unsorted, shape (m, n)."""
     ss = realize(L)
     effective = gains / (1.0 + gains * ss.D)
@@ -24,7 +28,26 @@ def _poles_at(L: TransferFunction, gains: FloatArray) -> ComplexArray:
     # Near a break-away Newton may pull two roots into one: keep the eigenvalues there.
     good &= np.abs(polished - found) < 0.2 * _nearest_neighbour(found)
     out = np.where(good, polished, found)
+    unsure = ~good.all(axis=1) & (gains > 0.0)
+    if unsure.any():
+        out[unsure] = _with_poles_near_roots(L, gains[unsure], out[unsure])
     out[gains == 0.0] = L.poles
+    for i in np.flatnonzero(np.isin(gains, [b.K for b in breaks])):
+        row = meet(L, float(gains[i]), out[i], breaks)
+        # As many as before: otherwise the double pole was not among them.
+        if row.size == L.order:
+            out[i] = row
+    return out
+
+
+def _with_poles_near_roots(L: TransferFunction, gains: FloatArray, poles: ComplexArray) -> ComplexArray:
+    """Next to a root of L eigenvalues are not sharp enough for Newton to begin: those are replaced."""
+    out = poles.copy()
+    for near in poles_near_roots(split_hidden_modes(L)[0], gains):
+        m = near.poles.shape[1]
+        nearest = np.argsort(np.abs(out - near.root), axis=1)[:, :m]
+        there = np.isfinite(near.poles).all(axis=1)
+        out[np.flatnonzero(there)[:, None], nearest[there]] = near.poles[there]
     return out
 
 
@@ -60,9 +83,11 @@ def _ratio(g: FloatArray) -> float:
     return float(min(np.log(g[2] / g[1]) / np.log(g[1] / g[0]), 2.0))
 
 
-def rational_branches(L: TransferFunction, gains: FloatArray, size: float) -> tuple[FloatArray, ComplexArray]:
+def rational_branches(
+    L: TransferFunction, gains: FloatArray, breaks: tuple[Breakaway, ...], size: float
+) -> tuple[FloatArray, ComplexArray]:
     """Add gains where a branch jumps or turns, until it looks smooth in a window of the given size."""
-    poles = _poles_at(L, gains)
+    poles = _poles_at(L, gains, breaks)
     coarse: npt.NDArray[np.bool_]
     for _ in range(5):
         branches = _join(L, gains, poles)
@@ -81,7 +106,7 @@ def rational_branches(L: TransferFunction, gains: FloatArray, size: float) -> tu
             break
         low, high = gains[:-1][coarse], gains[1:][coarse]
         extra = np.where(low > 0, np.sqrt(low * high), high / 4.0)
-        new = _poles_at(L, extra)
+        new = _poles_at(L, extra, ())
         gains = np.concatenate([gains, extra])
         poles = np.concatenate([poles, new])
         order = np.argsort(gains, kind="stable")

@@ -108,9 +108,9 @@ def root_locus(L: TransferFunction) -> RootLocus:
         # Crossings without end: those of the picture count.
         marks = [b.K for b in breaks if abs(b.s) < 3 * size] + [c.K for c in crossed if c.omega < 2 * top and c.K > 0]
         inside = Rectangle(left - 0.5 * size, right + 0.7 * size, 1.5 * top)
-        gains, branches, complete = dead_time_branches(L, _delay_gains(L, marks, inside), inside, size)
+        gains, branches, complete = dead_time_branches(L, _delay_gains(L, marks, inside), breaks, inside, size)
     else:
-        gains, branches = rational_branches(L, _rational_gains(L, marks, size), size)
+        gains, branches = rational_branches(L, _rational_gains(L, marks, size), breaks, size)
         complete = True
     return RootLocus(
         gains, branches, L.poles, L.zeros, asymptotes(L, 1.5 * top), breaks, crossed,

@@ -1,0 +1,112 @@
+"""Models that come with the request: judged, and simulated."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Body
+from starlette.responses import Response
+
+from looplab.api.answers.nonlinear import ModelValidation, SimulationAnswer
+from looplab.api.docs import BUSY, ERRORS
+from looplab.api.encode import json_response
+from looplab.api.simulations import SimulationRequest, Workers, open_loop_settings
+from looplab.api.strict import StrictRoute
+from looplab.engine.errors import InvalidInput
+from looplab.jobs.tasks import ModelSource, simulate, validate
+from looplab.labs.text import render_math
+from looplab.schemas import NonlinearModel
+
+router = APIRouter(tags=["models"], route_class=StrictRoute)
+
+PREDATOR_PREY: dict[str, Any] = {
+    "id": "predator-prey",
+    "title": "Predators and their prey",
+    "time_unit": "d",
+    "parameters": [{"name": "a", "value": 1}, {"name": "b", "value": 0.5}, {"name": "c", "value": 0.8}],
+    "inputs": [{"name": "hunt", "value": 0, "min": 0, "max": 1}],
+    "states": [
+        {"name": "prey", "initial": 2, "equation": "a*prey - b*prey*predators"},
+        {"name": "predators", "initial": 1, "equation": "b*prey*predators - (c + hunt)*predators"},
+    ],
+}
+SIMULATE_EXAMPLES: dict[str, Any] = {
+    "predators and prey": {"value": {"model": PREDATOR_PREY, "horizon": 30, "points": 101}},
+    "hunting begins, with noise": {
+        "value": {
+            "model": PREDATOR_PREY,
+            "horizon": 30,
+            "points": 101,
+            "parameters": {"a": 1.2},
+            "initial": {"prey": 3},
+            "inputs": {
+                "hunt": {
+                    "level": 0.1,
+                    "add": [
+                        {"type": "step", "amplitude": 0.2, "start": 10},
+                        {"type": "noise", "std": 0.01, "interval": 1, "seed": 7},
+                    ],
+                }
+            },
+        }
+    },
+    "it runs away": {
+        "value": {
+            "model": {"id": "escape", "title": "x' = x^2", "states": [{"name": "x", "initial": 1, "equation": "x^2"}]},
+            "horizon": 2,
+        }
+    },
+}
+VALIDATE_EXAMPLES: dict[str, Any] = {
+    "in order": {"value": PREDATOR_PREY},
+    "a name mistyped": {
+        "value": {
+            "id": "tank",
+            "title": "Tank",
+            "parameters": [{"name": "beta", "value": 0.5}],
+            "states": [{"name": "h", "initial": 1, "equation": "-bta*sqrt(h)"}],
+        }
+    },
+}
+
+
+class ModelSimulationRequest(SimulationRequest):
+    """A model, and how it is simulated."""
+
+    model: NonlinearModel
+
+
+@router.post(
+    "/models/validate", summary="Validate a model", responses={200: {"model": ModelValidation}, **ERRORS, **BUSY}
+)
+async def validate_model(
+    document: Annotated[dict[str, Any], Body(openapi_examples=VALIDATE_EXAMPLES)], workers: Workers
+) -> Response:
+    """What has to be repaired in a model, with its place and the column in the formula; if nothing, its equations.
+
+    A model is in order when it can be read and computed at its nominal point.
+    """
+    verdict = await workers.run(validate, document)
+    for equation in verdict["equations"]:
+        equation["mathml"] = _mathml(equation["latex"])
+    return json_response(verdict)
+
+
+@router.post(
+    "/models/simulate", summary="Simulate a model", responses={200: {"model": SimulationAnswer}, **ERRORS, **BUSY}
+)
+async def simulate_model(
+    request: Annotated[ModelSimulationRequest, Body(openapi_examples=SIMULATE_EXAMPLES)], workers: Workers
+) -> Response:
+    """States, outputs and inputs of a model over time. It is cut, with the reason, where it cannot go on."""
+    settings = open_loop_settings(request, request.model)
+    answer = await workers.run(simulate, ModelSource.document(request.model.to_document()), settings)
+    return json_response(answer, request.arrays)
+
+
+def _mathml(latex: str) -> str:
+    """MathML; empty where the author's symbols are no LaTeX, or the formula is too deep to be shown."""
+    try:
+        return render_math(latex, display=True)
+    except InvalidInput:
+        return ""

@@ -1,0 +1,129 @@
+"""What every simulation of a nonlinear model is asked with, and the workers it runs on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Literal, Protocol
+
+from fastapi import Depends, Request
+from pydantic import Field
+
+from looplab.engine.errors import InvalidInput
+from looplab.engine.nonlinear.inputs import InputCourse
+from looplab.jobs import WorkerPool
+from looplab.jobs.tasks import OpenLoopSettings
+from looplab.schemas import InputCourses, Model, located
+
+Values = Annotated[dict[str, float], Field(max_length=200)]
+
+
+class SimulationRequest(Model):
+    """How long, with which inputs, from where."""
+
+    horizon: Annotated[float, Field(ge=1e-9, le=1e9, description="[time]")]
+    points: Annotated[int, Field(ge=2, le=5000)] = 500
+    operating_point: Annotated[
+        str | None, Field(max_length=64, description="Its inputs, parameters and states are the nominal ones.")
+    ] = None
+    inputs: InputCourses = Field(default={})
+    parameters: Annotated[Values, Field(description="Left out: nominal.")] = Field(default={})
+    initial: Annotated[Values, Field(description="States at t = 0; left out: the model's own.")] = Field(default={})
+    method: Annotated[
+        Literal["LSODA", "RK45", "Radau", "BDF"], Field(description="LSODA changes between stiff and not by itself.")
+    ] = "LSODA"
+    arrays: Literal["list", "f4"] = "list"
+
+
+class Named(Protocol):
+    """What an input's document and its request shape have in common."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+
+    @property
+    def value(self) -> float:
+        """Its nominal value."""
+
+
+class Point(Protocol):
+    """What an operating point's document and its request shape have in common."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+
+    @property
+    def inputs(self) -> Mapping[str, float]:
+        """Inputs that are not nominal there."""
+
+    @property
+    def parameters(self) -> Mapping[str, float]:
+        """Parameters that are not nominal there."""
+
+    @property
+    def near(self) -> Mapping[str, float]:
+        """States there."""
+
+
+class ModelParts(Protocol):
+    """What a document and its request shape have in common."""
+
+    @property
+    def inputs(self) -> Sequence[Named]:
+        """Inputs."""
+
+    @property
+    def operating_points(self) -> Sequence[Point]:
+        """Operating points."""
+
+
+def workers(request: Request) -> WorkerPool:
+    """The application's workers."""
+    pool: WorkerPool = request.app.state.workers
+    return pool
+
+
+Workers = Annotated[WorkerPool, Depends(workers)]
+
+
+def open_loop_settings(request: SimulationRequest, model: ModelParts) -> OpenLoopSettings:
+    """The request as a worker takes it: operating point and nominal values put in.
+
+    Raises
+    ------
+    InvalidInput
+        The model has no such operating point, or an input's course makes no sense.
+    """
+    point = _operating_point(request.operating_point, model.operating_points)
+    at_point: Mapping[str, float] = point.inputs if point else {}
+    nominal = {each.name: each.value for each in model.inputs} | dict(at_point)
+    inputs: dict[str, float | InputCourse] = dict(at_point)
+    for name, course in request.inputs.items():
+        if isinstance(course, float | int):
+            inputs[name] = course
+            continue
+        with located(f"inputs.{name[:40]}"):
+            inputs[name] = course.to_engine(nominal.get(name, 0.0), request.horizon)
+    return OpenLoopSettings(
+        request.horizon,
+        request.points,
+        inputs,
+        {**(point.parameters if point else {}), **request.parameters},
+        {**(point.near if point else {}), **request.initial},
+        request.method,
+    )
+
+
+def _operating_point(name: str | None, points: Sequence[Point]) -> Point | None:
+    if name is None:
+        return None
+    found = next((point for point in points if point.name == name), None)
+    if found is None:
+        known = ", ".join(point.name for point in points)
+        raise InvalidInput(
+            "the model has no operating point of this name",
+            field="operating_point",
+            hint=f"it has {known}" if known else "leave it out",
+        )
+    return found

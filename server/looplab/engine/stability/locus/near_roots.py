@@ -1,0 +1,87 @@
+"""Closed-loop poles next to the open-loop poles and zeros that they leave or reach, where eigenvalues lose them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from looplab.engine.systems.transfer_function import TransferFunction
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+# Nearer than this fraction of the gap to the next root (over the order) the iteration gains two digits a step.
+NEAR = 0.01
+STEPS = 7
+
+
+@dataclass(frozen=True)
+class NearRoot:
+    """The poles within ``radius`` of one root of L, shape (gains, multiplicity) [rad/time]; NaN where not all are."""
+
+    root: complex
+    radius: float
+    poles: ComplexArray
+
+
+def poles_near_roots(L: TransferFunction, gains: FloatArray) -> list[NearRoot]:
+    r"""Closed-loop poles near each root of L, to rounding.
+
+    .. math:: (s - r)^m = (-K L_r(s))^{\pm 1}, \qquad L_r(s) = L(s)\,(s - r)^{\pm m}
+
+    + at a pole r, - at a zero, solved by iterating on the distance s - r, so that a distance far below the rounding of
+    s is right too.
+
+    Parameters
+    ----------
+    L : TransferFunction
+        Open loop for K = 1 without hidden modes, dead time exact.
+    gains : ndarray, shape (g,)
+        K > 0.
+
+    Returns
+    -------
+    list of NearRoot
+        Roots that no pole is near at any of the gains are left out.
+
+    References
+    ----------
+    .. [1] K. Ogata, Modern Control Engineering, 5th ed., Prentice Hall 2010, sec. 6-2 (angles of departure).
+    """
+    out = []
+    for every, sign in ((L.poles, 1.0), (L.zeros, -1.0)):
+        for r in dict.fromkeys(every.tolist()):
+            m = int(np.count_nonzero(every == r))
+            others = TransferFunction._of(L.zeros[L.zeros != r], L.poles[L.poles != r], L.gain, L.theta)
+            gap = np.abs(np.concatenate([others.zeros, others.poles]) - r).min(initial=np.inf)
+            reach = NEAR * min(gap, 1.0 / L.theta if L.theta else np.inf) / L.order
+            d = _distances(others, r, m, sign, gains, reach)
+            if np.isfinite(d).any():
+                out.append(NearRoot(complex(r), reach, r + d))
+    return out
+
+
+def _distances(
+    others: TransferFunction, r: complex, m: int, sign: float, gains: FloatArray, reach: float
+) -> ComplexArray:
+    """s - r of the m branches for each gain, shape (g, m); NaN where they are not all below ``reach``."""
+    z, p = r - others.zeros, r - others.poles
+    d = np.zeros((gains.size, m), dtype=complex)
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        at_root = np.log(z).sum() - np.log(p).sum() + np.log(others.gain + 0j) - others.theta * r
+        # Each of the m-th roots belongs to one branch.
+        start = sign * (np.log(gains)[:, None] + 1j * np.pi + at_root) + 2j * np.pi * np.arange(m)
+        for step in range(STEPS):
+            # Relative to the value at the root, so that no logarithm jumps across its cut.
+            moved = np.log1p(d[..., None] / z).sum(axis=-1) - np.log1p(d[..., None] / p).sum(axis=-1)
+            d = np.exp((start + sign * (moved - others.theta * d)) / m)
+            if step == 0:
+                near = (np.abs(d) < reach).all(axis=1)
+                if not near.any():
+                    return np.full(d.shape, np.nan, dtype=complex)
+            d[~near] = 0.0
+    if np.imag(r) == 0.0:
+        d = np.where(np.abs(d.imag) < 1e-9 * np.abs(d), d.real, d)
+    return np.where(near[:, None], d, np.nan)

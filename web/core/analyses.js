@@ -1,0 +1,73 @@
+/** What the analyses are asked beside the loop: how each starts, and how it stands in an address. */
+
+/** @import {AnalysesView, ResponseView} from "./types.js" */
+
+import { INPUTS, inputFromQuery, inputToQuery, startingInput, TRANSFORMS } from "./inputs.js";
+import { listText, parseList } from "./lists.js";
+
+const SUBJECTS = new Set(["plant", "open_loop", "closed_loop"]);
+const SUMS = new Set(["superposition", "convolution"]);
+export const MOST_SLICES = 500;
+
+/** @returns {AnalysesView} */
+export function startingAnalyses() {
+  return {
+    response: { of: "plant", input: startingInput("step", INPUTS), initial: null, sum: null, slices: 12 },
+    laplace: { input: startingInput("step", TRANSFORMS), ode: null },
+    polynomial: null,
+    model_type: "FOPDT",
+    cancel_tolerance: 1e-8,
+  };
+}
+
+/** @param {unknown} a @param {unknown} b */
+function same(a, b) {
+  return JSON.stringify(a) === JSON.stringify(b);
+}
+
+/** Only what is not as it starts. @param {URLSearchParams} query @param {AnalysesView} analyses */
+export function analysesToQuery(query, { response, laplace, polynomial, model_type, cancel_tolerance }) {
+  const start = startingAnalyses();
+  if (response.of !== start.response.of) query.set("response.of", response.of);
+  if (!same(response.input, start.response.input)) inputToQuery(query, "response", response.input);
+  if (response.initial?.y) query.set("response.y", listText(response.initial.y, ","));
+  if (response.initial?.x) query.set("response.x", listText(response.initial.x, ","));
+  if (response.sum) query.set("response.sum", response.sum);
+  if (response.slices !== start.response.slices) query.set("response.slices", String(response.slices));
+  if (laplace.input === null) query.set("laplace.input", "none");
+  else if (!same(laplace.input, start.laplace.input)) inputToQuery(query, "laplace", laplace.input);
+  for (const [name, values] of Object.entries(laplace.ode ?? {})) query.set(`laplace.${name}`, listText(values, ","));
+  if (polynomial) query.set("routh.polynomial", listText(polynomial, ","));
+  if (model_type !== start.model_type) query.set("model_type", model_type);
+  if (cancel_tolerance !== start.cancel_tolerance) query.set("cancel_tolerance", String(cancel_tolerance));
+}
+
+/** @param {URLSearchParams} query @returns {AnalysesView} */
+export function analysesFromQuery(query) {
+  const start = startingAnalyses();
+  const list = (/** @type {string} */ name) => {
+    const values = parseList(query.get(name) ?? "");
+    return values?.length ? values : null;
+  };
+  const [a, y, x] = [list("laplace.a"), list("response.y"), list("response.x")];
+  const subject = query.get("response.of") ?? "";
+  const sum = query.get("response.sum") ?? "";
+  const [slices] = list("response.slices") ?? [];
+  const [tolerance] = list("cancel_tolerance") ?? [];
+  return {
+    response: {
+      of: SUBJECTS.has(subject) ? /** @type {ResponseView["of"]} */ (subject) : start.response.of,
+      input: inputFromQuery(query, "response", INPUTS) ?? start.response.input,
+      initial: y ? { y } : x ? { x } : null,
+      sum: SUMS.has(sum) ? /** @type {ResponseView["sum"]} */ (sum) : null,
+      slices: slices !== undefined && Number.isInteger(slices) && slices >= 1 && slices <= MOST_SLICES ? slices : start.response.slices,
+    },
+    laplace: {
+      input: query.get("laplace.input") === "none" ? null : (inputFromQuery(query, "laplace", TRANSFORMS) ?? start.laplace.input),
+      ode: a ? { a, b: list("laplace.b") ?? [1], initial: list("laplace.initial") ?? [] } : null,
+    },
+    polynomial: list("routh.polynomial"),
+    model_type: query.get("model_type") === "SOPDT" ? "SOPDT" : "FOPDT",
+    cancel_tolerance: tolerance !== undefined && tolerance >= 0 && tolerance <= 0.1 ? tolerance : start.cancel_tolerance,
+  };
+}
