@@ -232,6 +232,17 @@ def test_a_draft_is_judged_not_refused(post: Any, draft: dict[str, Any], path: s
     assert response.json()["problems"][0]["path"] == path
 
 
+@pytest.mark.parametrize("depth", [50, 400, 1000])
+def test_a_document_nested_deeply_does_no_harm(post: Any, depth: int) -> None:
+    nested = b'{"a":' * depth + b"1" + b"}" * depth
+    for key in (b"schematic", b"states", b"x"):
+        draft = b'{"id": "n", "title": "N", "states": [{"name": "x", "initial": 1, "equation": "-x"}], "%s": %s}'
+        body = draft % (key, nested)
+        for path, sent in (("/models/validate", body), ("/models/simulate", b'{"horizon": 1, "model": %s}' % body)):
+            assert post(path, sent).status_code in (200, 400, 422)
+    assert post("/models/validate", DECAY).json()["valid"]
+
+
 def test_symbols_that_are_no_latex_leave_the_formula_out(post: Any) -> None:
     draft = deepcopy(DECAY)
     draft["states"][0]["latex"] = r"\frac{"

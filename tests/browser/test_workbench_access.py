@@ -6,7 +6,7 @@ from playwright.sync_api import Page, expect
 from workbench import open_workbench, settled, violations
 
 SIZES = {"wide": {"width": 1440, "height": 900}, "narrow": {"width": 360, "height": 740}}
-ALL_PLOTS = "show=step,bode,nyquist,root_locus,sensitivity,numbers"
+ALL_PLOTS = "show=step,bode,nyquist,nichols,root_locus,sensitivity,numbers"
 
 
 @pytest.fixture(params=["light", "dark"])
@@ -24,7 +24,7 @@ def test_the_workbench_passes_axe(page: Page, scheme: str, size: str):
         toggle = page.locator(f"#card-{card} .card-toggle")
         if toggle.get_attribute("aria-expanded") == "false":
             toggle.click()
-    page.get_by_text("Form and action").click()
+    page.get_by_text("Form, action, setpoint weight").click()
     expect(page.locator(".rule math").first).to_be_visible()
     settled(page)
     assert violations(page) == []

@@ -76,10 +76,12 @@ def tracked(folder: str) -> list[str]:
     return [name for name in listing.split("\0") if name and (REPOSITORY / name).is_file()]
 
 
-def test_the_wheel_carries_pages_and_labs(wheel):
+def test_the_wheel_carries_pages_labs_and_plants(wheel):
     inside = set(zipfile.ZipFile(wheel).namelist())
     assert {f"looplab/_data/{name}" for name in tracked("web") + tracked("labs")} <= inside
-    assert "looplab/py.typed" in inside
+    plants = "server/looplab/plants"
+    assert {name.removeprefix("server/") for name in tracked(plants) if name.endswith(".json")} <= inside
+    assert {"looplab/py.typed", "looplab/plants/models/cstr.json"} <= inside
 
 
 def test_the_wheel_carries_nothing_else(wheel):

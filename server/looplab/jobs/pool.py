@@ -91,7 +91,9 @@ class WorkerPool:
         await self._admission()
         self._inside += 1
         try:
-            pool = await asyncio.to_thread(self._started)
+            running = self._running()
+            # Starting processes takes a while: not in the event loop.
+            pool = await asyncio.to_thread(self._started) if running is None else running
             task = pool.schedule(within_budget, args=(self.budget, function, *args), timeout=self.deadline)
             future = asyncio.wrap_future(task)
             done, _ = await asyncio.wait({future}, timeout=LONGEST_WAIT + self.deadline)
@@ -124,9 +126,12 @@ class WorkerPool:
 
     def _started(self) -> ProcessPool:
         with self._starting:
-            if self._pool is None or not self._pool.active:
-                self._pool = _new_pool(self.workers)
+            self._pool = self._running() or _new_pool(self.workers)
             return self._pool
+
+    def _running(self) -> ProcessPool | None:
+        pool = self._pool
+        return pool if pool is not None and pool.active else None
 
     def close(self) -> None:
         """End the workers, whatever they do."""

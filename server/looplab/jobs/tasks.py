@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
@@ -10,6 +9,7 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+import orjson
 
 from looplab.engine.errors import EngineError, NonFinite, ParseError
 from looplab.engine.nonlinear import CompiledModel, compile_model, latex_equations
@@ -23,7 +23,10 @@ MAX_PROBLEMS = 20
 
 @dataclass(frozen=True)
 class ModelSource:
-    """Which model: ``kind`` is PLANT or DOCUMENT, ``text`` the id or the JSON."""
+    """Which model: ``kind`` is PLANT or DOCUMENT, ``text`` the id or the JSON.
+
+    Text, not the parsed document: what travels to a worker may be nested as deeply as a request can be.
+    """
 
     kind: str
     text: str
@@ -31,7 +34,7 @@ class ModelSource:
     @classmethod
     def document(cls, document: Mapping[str, Any]) -> ModelSource:
         """A model that came with the request."""
-        return cls(DOCUMENT, json.dumps(document, sort_keys=True))
+        return cls(DOCUMENT, orjson.dumps(document).decode())
 
 
 @dataclass(frozen=True)
@@ -48,7 +51,7 @@ class OpenLoopSettings:
 
 @lru_cache(maxsize=32)
 def _compiled(text: str) -> CompiledModel:
-    return compile_model(json.loads(text))
+    return compile_model(orjson.loads(text))
 
 
 def model_of(source: ModelSource) -> CompiledModel:
@@ -109,8 +112,9 @@ def simulate(source: ModelSource, settings: OpenLoopSettings) -> dict[str, Any]:
     }
 
 
-def validate(document: dict[str, Any]) -> dict[str, Any]:
-    """Every problem of a document, and its equations where there is none."""
+def validate(text: bytes) -> dict[str, Any]:
+    """Every problem of a document, given as JSON, and its equations where there is none."""
+    document: dict[str, Any] = orjson.loads(text)
     problems: list[EngineError] = []
     model: CompiledModel | None = None
     while len(problems) < MAX_PROBLEMS:

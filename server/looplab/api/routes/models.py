@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Body
+from fastapi import APIRouter, Body, Request
 from starlette.responses import Response
 
 from looplab.api.answers.nonlinear import ModelValidation, SimulationAnswer
@@ -80,13 +80,14 @@ class ModelSimulationRequest(SimulationRequest):
     "/models/validate", summary="Validate a model", responses={200: {"model": ModelValidation}, **ERRORS, **BUSY}
 )
 async def validate_model(
-    document: Annotated[dict[str, Any], Body(openapi_examples=VALIDATE_EXAMPLES)], workers: Workers
+    document: Annotated[dict[str, Any], Body(openapi_examples=VALIDATE_EXAMPLES)], request: Request, workers: Workers
 ) -> Response:
     """What has to be repaired in a model, with its place and the column in the formula; if nothing, its equations.
 
     A model is in order when it can be read and computed at its nominal point.
     """
-    verdict = await workers.run(validate, document)
+    # As it was sent: a draft may be nested deeper than can be written out again.
+    verdict = await workers.run(validate, await request.body())
     for equation in verdict["equations"]:
         equation["mathml"] = _mathml(equation["latex"])
     return json_response(verdict)
