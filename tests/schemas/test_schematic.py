@@ -35,9 +35,9 @@ def test_the_example_for_authors_is_right():
 
 def test_there_is_a_drawing_of_every_plant():
     assert {path.stem for path in DRAWINGS} >= {
-        *("heater", "thermometer", "cstr", "jacketed_cstr", "cart_pendulum", "gravity_tank", "two_tanks"),
-        *("two_tanks_interacting", "tanks_in_series", "jacketed_cooler", "distillation", "level_loop"),
-        *("cruise_control", "body_temperature"),
+        *("heater", "thermometer", "cstr", "jacketed-cstr", "cart-pendulum", "gravity-drained-tank", "two-tanks"),
+        *("two-tanks-interacting", "tanks-in-series", "jacketed-cooler", "distillation", "level-loop"),
+        *("cruise-control", "body-temperature"),
     }
 
 
