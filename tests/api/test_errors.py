@@ -16,7 +16,8 @@ CHECK = "/labs/ziegler-nichols-third-order/check"
 ROUTES = [
     *("/loop", "/tune", "/frequency", "/margins", "/nyquist", "/root-locus", "/laplace", "/approximate", "/routh"),
     *("/stability", "/response", "/state-space", CHECK, "/labs/validate"),
-    *("/plants/cstr/simulate", "/models/simulate", "/models/validate"),
+    *("/plants/cstr/simulate", "/models/simulate", "/models/validate", "/plants/cstr/control", "/models/control"),
+    *("/tune/optimal", "/tune/trade-off", "/compare", "/gain-map", "/controller-forms"),
 ]
 RAW = {
     "empty": b"",

@@ -52,7 +52,10 @@ def test_cohen_coon(post: Any, source: dict[str, Any]) -> None:
     [
         ("1/(s+1)", "ziegler_nichols", "never reaches -180"),
         ("1/(s+1)", "cohen_coon", "needs dead time"),
-        ("exp(-s)/s", "cohen_coon", "does not settle"),
+        ("exp(-s)/s", "cohen_coon", "not for an integrating process"),
+        ("exp(-0.2s)/(s-1)", "tyreus_luyben", "Kc between 1 and 7.2"),
+        ("exp(-5s)/(s+1)", "itae_load", "beyond 1"),
+        ("1/((s+1)(s^2+0.2s+1))", "simc", "real poles"),
         ("exp(-5s)/(s+1)", "cohen_coon", "beyond 4"),
         ("(1-s)/(s+1)^2", "cohen_coon", "wrong direction"),
         ("2(s+1)/(s(s-4))", "ziegler_nichols", "stable for gains above 2"),

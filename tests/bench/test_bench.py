@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from looplab.bench import accuracy, moves, ours, peer
+from looplab.bench import accuracy, loci, moves, ours, peer
 from looplab.bench.scenarios import DELAY_FREE
 from looplab.cli import app
 from references import reference
@@ -64,6 +64,29 @@ def test_both_do_the_same_work_without_dead_time(polynomials: bool) -> None:
         np.sort_complex(np.round(a["poles"].poles, 6)), np.sort_complex(np.round(b["poles"], 6)), atol=2e-6
     )
     assert a["root_locus"].branches.shape[0] == b["root_locus"].loci.shape[1]
+
+
+@pytest.mark.parametrize("locus", loci.LOCI, ids=lambda locus: locus.name)
+def test_both_draw_the_locus_of_one_system(locus: loci.Locus) -> None:
+    """Where python-control's branches pass, the gain of looplab's open loop is the one it was drawn for."""
+    mine, other = locus.ours(1.0), locus.peer(1.0)
+    given = np.sort_complex(np.array(locus.poles))
+    np.testing.assert_allclose(np.sort_complex(mine.open_loop_poles), given, atol=1e-12)
+    size = max(mine.view[1][1], -mine.view[0][0])
+    K, s = (values.ravel() for values in np.broadcast_arrays(other.gains[:, None], other.loci))
+    roots = np.array([*locus.zeros, *locus.poles])
+    apart = np.abs(s[:, None] - roots).min(axis=1) > 1e-2
+    # Within half a dead time's turn the fraction is as good as exact.
+    near = apart & (np.abs(s) < (0.5 / locus.theta if locus.theta else size)) & (K > 0)
+    K, s = K[near], s[near]
+    assert s.size > 20
+    L = locus.gain * np.exp(-locus.theta * s)
+    for zero in locus.zeros:
+        L = L * (s - zero)
+    for pole in locus.poles:
+        L = L / (s - pole)
+    np.testing.assert_allclose(K * L, -1.0, atol=1e-3)
+    assert mine.complete
 
 
 def test_no_gain_is_timed_twice() -> None:

@@ -32,7 +32,7 @@ def test_a_typed_plant_is_drawn_and_a_wrong_one_says_where(page: Page):
     expect(page.get_by_role("alert").filter(has_text="q")).to_contain_text("column 13")
     expect(text).to_have_attribute("aria-invalid", "true")
     # The mark stands under the 13th character.
-    expect(page.locator(".caret-line")).to_have_text("\u00a0" * 12 + "▲", use_inner_text=False)
+    expect(page.locator("#card-plant .caret-line")).to_have_text("\u00a0" * 12 + "▲", use_inner_text=False)
     expect(page.locator("#panel-step")).to_have_class(re.compile("stale"))
 
     text.fill("1/(s+1)")
@@ -103,7 +103,7 @@ def test_a_typed_gain_may_leave_the_range_of_its_slider_but_not_be_nonsense(page
 def test_a_rule_fills_the_gains_and_shows_its_formula(page: Page):
     open_workbench(page)
     page.get_by_role("button", name=re.compile("^Tune")).click()
-    rule = page.get_by_role("region", name=re.compile("Ziegler"))
+    rule = page.locator("details.rule", has_text="ultimate cycle")
     expect(rule.locator(".basis")).to_contain_text("8.000")
     expect(rule.locator("math").first).to_be_visible()
     expect(rule.locator(".source")).to_contain_text("ASME 64 (1942)")
@@ -122,9 +122,27 @@ def test_a_rule_fills_the_gains_and_shows_its_formula(page: Page):
 def test_a_rule_that_does_not_apply_says_why(page: Page):
     open_workbench(page, "plant=1/(s%2B1)&type=P&Kc=2")
     page.get_by_role("button", name=re.compile("^Tune")).click()
-    rule = page.get_by_role("region", name=re.compile("Ziegler"))
-    expect(rule.locator(".refused")).to_contain_text("Does not apply.")
-    expect(rule.get_by_role("button")).to_have_count(0)
+    family = page.get_by_role("region", name="From the ultimate cycle")
+    refused = family.locator(".refused", has_text="Ziegler–Nichols (ultimate cycle)")
+    expect(refused).to_contain_text("do not apply. The plant has no ultimate gain")
+    expect(family.get_by_role("button")).to_have_count(0)
+    expect(page.get_by_role("button", name=re.compile("^Use Cohen"))).to_have_count(0)
+
+
+def test_rules_are_grouped_and_open_one_by_one(page: Page):
+    """SIMC PI on 1/(s+1)^3: half rule theta = 1.5, tau = 1.5, tau_c = theta: Kc = 0.5, tau_I = 1.5."""
+    open_workbench(page)
+    page.get_by_role("button", name=re.compile("^Tune")).click()
+    family = page.get_by_role("region", name="From a model, with a closed-loop time constant")
+    simc = family.locator("details.rule", has_text="SIMC")
+    expect(simc.locator("math").first).to_be_hidden()
+    simc.locator("summary").press("Enter")
+    expect(simc.locator(".basis").first).to_contain_text("Half rule")
+    expect(simc).to_contain_text("series form")
+    page.get_by_role("button", name="Use SIMC (Skogestad), PI", exact=True).click()
+    expect(field(page, "Kc")).to_have_value("0.5")
+    expect(field(page, "tau_I")).to_have_value("1.5")
+    expect(simc).to_have_class(re.compile("in-force"))
 
 
 def test_the_address_holds_the_loop(page: Page):

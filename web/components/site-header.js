@@ -7,6 +7,7 @@ import { chooseTheme, themeChoice } from "./theme.js";
 const PAGES = [
   { id: "home", href: "/", label: "Home" },
   { id: "workbench", href: "/workbench", label: "Workbench" },
+  { id: "plants", href: "/plants", label: "Plants" },
   { id: "labs", href: "/labs", label: "Labs" },
 ];
 

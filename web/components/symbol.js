@@ -15,6 +15,8 @@ export const SYMBOLS = {
   K: { base: "K", spoken: "process gain K" },
   tau: { base: "τ", spoken: "time constant tau" },
   theta: { base: "θ", spoken: "dead time theta" },
+  tau_1: { base: "τ", sub: "1", spoken: "slow time constant tau 1" },
+  tau_2: { base: "τ", sub: "2", spoken: "fast time constant tau 2" },
   zeta: { base: "ζ", spoken: "damping zeta" },
   Ku: { base: "K", sub: "u", spoken: "ultimate gain Ku" },
   Pu: { base: "P", sub: "u", spoken: "ultimate period Pu" },

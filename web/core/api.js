@@ -71,6 +71,12 @@ export function createApi({ base = "/api/v1", fetch = globalThis.fetch.bind(glob
     tune: (request) => call("/tune", request),
     /** One analysis. @param {"response" | "laplace" | "routh" | "stability" | "state-space" | "approximate"} route @param {object} request @returns {Promise<any>} */
     analyse: async (route, request) => decodeArrays(await call(`/${route}`, request)),
+    /** @returns {Promise<{plants: import("./plant-types.js").PlantSummary[]}>} */
+    plants: () => call("/plants"),
+    /** @param {string} id @returns {Promise<import("./plant-types.js").PlantAnswer>} */
+    plant: (id) => call(`/plants/${encodeURIComponent(id)}`),
+    /** One thing worked out for a plant. @param {string} id @param {string} route @param {object} request @returns {Promise<any>} */
+    workOut: (id, route, request) => call(`/plants/${encodeURIComponent(id)}/${route}`, request),
     /** @returns {Promise<{labs: LabSummary[]}>} */
     labs: () => call("/labs"),
     /** @param {string} id @returns {Promise<any>} */

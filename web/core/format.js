@@ -41,6 +41,11 @@ export function formatAbsent(reason) {
   return /^infinite\b/i.test(reason ?? "") ? "∞" : UNDEFINED;
 }
 
+/** Names of times in words from the server as they are printed: tau_c is τ_c. @param {string} text */
+export function greek(text) {
+  return text.replace(/\b(tau|theta|lambda)(?=\b|_)/g, (name) => (name === "tau" ? "τ" : name === "theta" ? "θ" : "λ"));
+}
+
 /**
  * A sentence as people write it: a capital at the start, a stop at the end.
  * @param {string | null | undefined} text

@@ -253,11 +253,14 @@
  * @property {Panels} panels
  */
 
+/** @typedef {{kind: string, values: Record<string, number>, how: string}} TuneBasis */
+
 /**
  * @typedef {object} TuneSetting
  * @property {string} rule
  * @property {string} name
- * @property {"P" | "PI" | "PID"} type
+ * @property {string} family
+ * @property {ControllerType} type
  * @property {number | null} Kc
  * @property {number | null} tau_I
  * @property {number | null} tau_D
@@ -266,6 +269,10 @@
  * @property {string | null} reason
  * @property {{latex: string, mathml: string} | null} formula
  * @property {string} source
+ * @property {string} validity
+ * @property {string | null} note
+ * @property {{form: string, Kc: number, tau_I: number | null, tau_D: number | null} | null} published
+ * @property {TuneBasis | null} basis
  */
 
 /**

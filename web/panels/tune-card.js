@@ -2,15 +2,19 @@
 
 /** @import {Api} from "../core/api.js" */
 /** @import {Store} from "../core/store.js" */
-/** @import {TuneAnswer, TuneSetting} from "../core/types.js" */
+/** @import {TuneAnswer, TuneBasis, TuneSetting} from "../core/types.js" */
 
-import { formatNumber, formatWithUnit, sentence } from "../core/format.js";
+import { formatNumber, formatWithUnit, greek, sentence } from "../core/format.js";
 import { applySetting } from "../core/loop.js";
+import { groupBy } from "../core/groups.js";
 import { createCard } from "../components/card.js";
 import { h } from "../components/dom.js";
 import { showMath } from "../components/mathml.js";
 import { symbol } from "../components/symbol.js";
 import { toast } from "../components/status-toast.js";
+
+/** What is shown of the data that a rule started from, and whether it is a time. @type {Array<[name: string, time: boolean]>} */
+const BASIS = [["Ku", false], ["Pu", true], ["K", false], ["tau", true], ["tau_1", true], ["tau_2", true], ["zeta", false], ["theta", true]];
 
 /** @param {HTMLElement} host @param {Store} store @param {Api} api @returns {() => void} */
 export function mount(host, store, api) {
@@ -18,6 +22,8 @@ export function mount(host, store, api) {
   const out = h("div", { class: "rules" });
   /** The plant that the rules shown are for. */
   let shownFor = "";
+  /** Rules that the student opened; before that, the first that applies. @type {Set<string> | null} */
+  let opened = null;
   const card = createCard(host, { id: "card-tune", title: "Tune", open: false, onToggle: (open) => open && void ask() });
   card.body.append(out);
   card.summarise("fill the gains from a rule");
@@ -32,7 +38,7 @@ export function mount(host, store, api) {
       const answer = await api.tune({ plant });
       // A newer plant has been asked for meanwhile.
       if (shownFor !== key) return;
-      out.replaceChildren(...rules(answer));
+      out.replaceChildren(...families(answer));
       showInForce();
     } catch (error) {
       if (shownFor !== key) return;
@@ -44,38 +50,66 @@ export function mount(host, store, api) {
   }
 
   /** @param {TuneAnswer} answer */
-  function rules({ settings, ultimate, model }) {
-    const byRule = [...new Set(settings.map(({ rule }) => rule))].map((rule) => settings.filter((setting) => setting.rule === rule));
-    return byRule.map((group) => ruleBlock(group, basis(group[0]?.rule ?? "", ultimate, model)));
+  function families({ settings }) {
+    const first = settings.find(({ valid }) => valid)?.rule;
+    return [...groupBy(settings, ({ family }) => family)].map(([family, all]) => {
+      const rules = [...groupBy(all, ({ rule }) => rule).values()];
+      const applies = (/** @type {TuneSetting[]} */ group) => group.some(({ valid }) => valid);
+      const refused = groupBy(rules.filter((group) => !applies(group)), (group) => group[0]?.reason ?? "the plant is outside its range");
+      return h(
+        "section",
+        { class: "rule-family", "aria-label": family },
+        h("h3", {}, family),
+        ...rules.filter(applies).map((group) => ruleBlock(group, first)),
+        refused.size === 0 ? null : h("div", { class: "refused-rules" }, ...[...refused].map(([reason, groups]) => refusal(reason, groups))),
+      );
+    });
   }
 
-  /** What a rule reads off the plant. @param {string} rule @param {TuneAnswer["ultimate"]} ultimate @param {TuneAnswer["model"]} model */
-  function basis(rule, ultimate, model) {
+  /** @param {string} reason @param {TuneSetting[][]} groups */
+  function refusal(reason, groups) {
+    const names = groups.map((group) => group[0]?.name ?? "").join(", ");
+    return h("p", { class: "refused" }, h("strong", {}, names), groups.length > 1 ? " do not apply. " : " does not apply. ", greek(sentence(reason)));
+  }
+
+  /** @param {TuneSetting[]} group @param {string | undefined} first */
+  function ruleBlock(group, first) {
+    const [{ rule, name, source, validity }] = /** @type {[TuneSetting, ...TuneSetting[]]} */ (group);
+    const types = group.filter(({ valid }) => valid).map(({ type }) => type);
+    const body = h("div", { class: "rule-body" });
+    let shown = "";
+    for (const setting of group) {
+      const basis = JSON.stringify(setting.basis);
+      if (setting.basis && basis !== shown) body.append(basisLine(setting.basis));
+      shown = basis;
+      body.append(settingRow(setting));
+    }
+    body.append(h("p", { class: "source" }, `${greek(sentence(`range: ${validity}`))} ${source}.`));
+    const details = h("details", { class: "rule" }, h("summary", {}, h("h4", {}, name), h("span", { class: "types" }, types.join(" · "))), body);
+    details.open = opened ? opened.has(rule) : rule === first;
+    details.addEventListener("toggle", () => {
+      opened ??= new Set(first ? [first] : []);
+      if (details.open) opened.add(rule);
+      else opened.delete(rule);
+    });
+    return details;
+  }
+
+  /** What a rule read off the plant. @param {TuneBasis} basis */
+  function basisLine({ values, how }) {
     const unit = answers.time_unit;
-    if (rule.includes("ziegler") && ultimate?.Ku != null) {
-      return h("p", { class: "basis" }, symbol("Ku"), ` = ${formatNumber(ultimate.Ku, 4)}, `, symbol("Pu"), ` = ${formatWithUnit(ultimate.Pu, unit, 4)}`);
-    }
-    if (rule.includes("cohen") && model) {
-      return h("p", { class: "basis", title: model.how }, symbol("K"), ` = ${formatNumber(model.K)}, `, symbol("tau"), ` = ${formatWithUnit(model.tau, unit)}, `, symbol("theta"), ` = ${formatWithUnit(model.theta, unit)}. ${sentence(model.how)}`);
-    }
-    return null;
-  }
-
-  /** @param {TuneSetting[]} group @param {HTMLElement | null} readings */
-  function ruleBlock(group, readings) {
-    const [first] = group;
-    const refused = group.every(({ valid }) => !valid);
-    const reason = group.find(({ reason: why }) => why)?.reason ?? null;
-    const body = refused
-      ? h("p", { class: "refused" }, "Does not apply. ", sentence(reason ?? "the plant is outside its range"))
-      : h("div", { class: "rule-settings" }, ...group.map(settingRow));
-    return h("section", { class: "rule", "aria-label": first?.name ?? "" }, h("h3", {}, first?.name ?? ""), refused ? null : readings, body, h("p", { class: "source" }, first?.source ?? ""));
+    const lags = values["tau_1"] !== undefined;
+    const parts = BASIS.filter(([name]) => values[name] !== undefined && !(lags && (name === "tau" || name === "zeta"))).flatMap(([name, time], i) => {
+      const value = values[name];
+      return [i ? ", " : "", symbol(name), ` = ${time ? formatWithUnit(value, unit, 4) : formatNumber(value, 4)}`];
+    });
+    return h("p", { class: "basis" }, ...parts, `. ${sentence(how)}`);
   }
 
   /** @param {TuneSetting} setting */
   function settingRow(setting) {
-    const { type, valid, reason, Kc, tau_I, tau_D, formula } = setting;
-    const math = h("div", { class: "math-display small" });
+    const { type, valid, reason, Kc, tau_I, tau_D, formula, note, published } = setting;
+    const math = h("div", { class: "math-display small", tabindex: "0", role: "group", "aria-label": `Formula of ${setting.name}, ${type}` });
     showMath(math, formula?.mathml);
     const values = h(
       "span",
@@ -89,12 +123,22 @@ export function mount(host, store, api) {
       store.set({ controller: applySetting(setting, store.get().controller) });
       toast().say(`${setting.name}, ${type}: gains are set.`, { action: { label: "Undo", run: () => store.undo() } });
     });
-    const row = h("div", { class: "setting" }, h("div", { class: "setting-head" }, h("strong", {}, type), valid ? values : h("span", { class: "refused" }, sentence(reason ?? "does not apply")), valid ? use : null), math);
+    const remarks = [
+      note ? greek(sentence(note)) : "",
+      published ? `The source gives the series form: ${formatNumber(published.Kc, 4)}, ${formatNumber(published.tau_I, 4)}, ${formatNumber(published.tau_D, 4)}; converted to the ideal form.` : "",
+    ].filter(Boolean);
+    const row = h(
+      "div",
+      { class: "setting" },
+      h("div", { class: "setting-head" }, h("strong", {}, type), valid ? values : h("span", { class: "refused" }, greek(sentence(reason ?? "does not apply"))), valid ? use : null),
+      math,
+      remarks.length ? h("p", { class: "basis" }, remarks.join(" ")) : null,
+    );
     if (valid) row.dataset["setting"] = JSON.stringify([type, Kc, tau_I, tau_D]);
     return row;
   }
 
-  /** Marks the setting whose gains are the ones in force. */
+  /** Marks the settings whose gains are the ones in force. */
   function showInForce() {
     const { type, form, Kc, tau_I, tau_D } = store.get().controller;
     const near = (/** @type {number | null} */ a, /** @type {number} */ b) => a === null || Math.abs(a - b) <= 1e-6 * Math.abs(b);
@@ -103,6 +147,7 @@ export function mount(host, store, api) {
       const [t, k, i, d] = text ? JSON.parse(text) : [];
       row.classList.toggle("in-force", form === "ideal" && t === type && near(k === undefined ? null : Math.abs(k), Kc) && near(i ?? null, tau_I) && near(d ?? null, tau_D));
     }
+    for (const rule of out.querySelectorAll(".rule")) rule.classList.toggle("in-force", rule.querySelector(".setting.in-force") !== null);
   }
 
   const stopStore = store.subscribe((_, change) => {

@@ -10,22 +10,7 @@ from fastapi import APIRouter, FastAPI
 from looplab import __version__
 from looplab.api import errors, pages
 from looplab.api.limits import BodyLimit
-from looplab.api.routes import (
-    connect,
-    frequency,
-    health,
-    labs,
-    laplace,
-    loop,
-    models,
-    plants,
-    response,
-    root_locus,
-    routh,
-    stability,
-    state_space,
-    tune,
-)
+from looplab.api.routes import ROUTERS
 from looplab.api.security import SecurityHeaders
 from looplab.api.settings import Settings
 from looplab.jobs import WorkerPool
@@ -68,11 +53,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     )
     app.state.workers = workers
     v1 = APIRouter(prefix="/api/v1")
-    for module in (
-        *(health, loop, frequency, root_locus, tune, laplace, labs, routh, stability, response, state_space, connect),
-        *(plants, models),
-    ):
-        v1.include_router(module.router)
+    for router in ROUTERS:
+        v1.include_router(router)
     app.include_router(v1)
     errors.install(app)
     if settings.pages:

@@ -20,6 +20,8 @@ PAGES = {
     "/workbench": "workbench.html",
     "/labs": "labs.html",
     "/labs/{lab_id}": "lab.html",
+    "/plants": "plants.html",
+    "/plants/{plant_id}": "plant.html",
     "/api": "api.html",
 }
 

@@ -9,10 +9,11 @@ from fastapi import Depends, Request
 from pydantic import Field
 
 from looplab.engine.errors import InvalidInput
+from looplab.engine.nonlinear.control_loop import ControlLoop
 from looplab.engine.nonlinear.inputs import InputCourse
 from looplab.jobs import WorkerPool
 from looplab.jobs.tasks import OpenLoopSettings
-from looplab.schemas import InputCourses, Model, located
+from looplab.schemas import ControlLoopShape, InputCourses, Model, located
 
 Values = Annotated[dict[str, float], Field(max_length=200)]
 
@@ -21,17 +22,24 @@ class SimulationRequest(Model):
     """How long, with which inputs, from where."""
 
     horizon: Annotated[float, Field(ge=1e-9, le=1e9, description="[time]")]
+    start: Annotated[float, Field(ge=0, le=1e9, description="Time at the start: a run goes on where one ended.")] = 0.0
     points: Annotated[int, Field(ge=2, le=5000)] = 500
     operating_point: Annotated[
         str | None, Field(max_length=64, description="Its inputs, parameters and states are the nominal ones.")
     ] = None
     inputs: InputCourses = Field(default={})
     parameters: Annotated[Values, Field(description="Left out: nominal.")] = Field(default={})
-    initial: Annotated[Values, Field(description="States at t = 0; left out: the model's own.")] = Field(default={})
+    initial: Annotated[Values, Field(description="States at the start; left out: the model's own.")] = Field(default={})
     method: Annotated[
         Literal["LSODA", "RK45", "Radau", "BDF"], Field(description="LSODA changes between stiff and not by itself.")
     ] = "LSODA"
     arrays: Literal["list", "f4"] = "list"
+
+
+class ControlRequest(SimulationRequest):
+    """A simulation with controllers; the course of an input that one of them moves is its bias, a number."""
+
+    loops: Annotated[list[ControlLoopShape], Field(min_length=1, max_length=3)]
 
 
 class Named(Protocol):
@@ -104,7 +112,7 @@ def open_loop_settings(request: SimulationRequest, model: ModelParts) -> OpenLoo
             inputs[name] = course
             continue
         with located(f"inputs.{name[:40]}"):
-            inputs[name] = course.to_engine(nominal.get(name, 0.0), request.horizon)
+            inputs[name] = course.to_engine(nominal.get(name, 0.0), request.start + request.horizon)
     return OpenLoopSettings(
         request.horizon,
         request.points,
@@ -112,7 +120,17 @@ def open_loop_settings(request: SimulationRequest, model: ModelParts) -> OpenLoo
         {**(point.parameters if point else {}), **request.parameters},
         {**(point.near if point else {}), **request.initial},
         request.method,
+        request.start,
     )
+
+
+def control_loops(request: ControlRequest) -> list[ControlLoop]:
+    """The loops of a request as a worker takes them; raises EngineError naming the field."""
+    out = []
+    for index, loop in enumerate(request.loops):
+        with located(f"loops[{index}]"):
+            out.append(loop.to_engine(request.horizon))
+    return out
 
 
 def _operating_point(name: str | None, points: Sequence[Point]) -> Point | None:

@@ -30,25 +30,23 @@ class Ours:
     def move(self, Kc: float, locus: bool) -> dict[str, Any]:
         """Verdict, poles, y and u for setpoint and load, metrics, Bode of L, P, C, sensitivities, Nyquist, margins."""
         from looplab.engine.frequency import bode, margins, nyquist_count, nyquist_curve
-        from looplab.engine.loop import closed_loop_step, step_metrics
+        from looplab.engine.frequency.sampled import sampled_at
+        from looplab.engine.loop import closed_loop_step, loop_metrics
         from looplab.engine.stability import closed_loop_poles, closed_loop_verdict, root_locus
 
         loop = self.loop(Kc)
         L = loop.open_loop
         verdict = closed_loop_verdict(loop)
         step = closed_loop_step(loop, self.scenario.horizon, POINTS)
-        value = L.response(self.omega)
-        S = 1.0 / (1.0 + value)
+        L_at, P_at, C_at = (sampled_at(system, self.omega).value for system in (L, self.plant, loop.C))
+        S = 1.0 / (1.0 + L_at)
         out: dict[str, Any] = {
             "verdict": verdict,
             "poles": closed_loop_poles(loop),
             "step": step,
-            "metrics": (
-                step_metrics(step.setpoint, setpoint=1.0, stable=verdict.closed_loop_stable),
-                step_metrics(step.load, setpoint=0.0, stable=verdict.closed_loop_stable),
-            ),
+            "metrics": loop_metrics(step, stable=verdict.closed_loop_stable),
             "bode": [bode(system, self.omega) for system in (L, self.plant, loop.C)],
-            "sensitivity": (S, value * S, self.plant.response(self.omega) * S, loop.C.response(self.omega) * S),
+            "sensitivity": (S, L_at * S, P_at * S, C_at * S),
             "nyquist": (nyquist_curve(L), nyquist_count(L)),
             "margins": margins(L),
         }

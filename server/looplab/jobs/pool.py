@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 # Read by the process that the workers are copies of, so that a new one is there at once.
-PRELOAD = ["looplab.jobs.budget", "looplab.jobs.tasks", "looplab.engine.nonlinear.simulation"]
+PRELOAD = ["looplab.jobs.budget", "looplab.jobs.tasks", "looplab.engine.nonlinear.control_loop.simulation"]
 # A short burst is held back rather than refused.
 HOLD = 0.5
 LONGEST_WAIT = 10.0

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 import orjson
 
 from looplab.engine.errors import EngineError, NonFinite, ParseError
 from looplab.engine.nonlinear import CompiledModel, compile_model, latex_equations
+from looplab.engine.nonlinear.control_loop import ControlLoop
 from looplab.engine.nonlinear.inputs import InputCourse
+from looplab.engine.systems.polynomial import FloatArray
 from looplab.plants import load_plant
+
+if TYPE_CHECKING:
+    from looplab.engine.nonlinear.simulation import Simulation
 
 # A plant's id, or the JSON text of a document.
 PLANT, DOCUMENT = "plant", "document"
@@ -47,6 +53,7 @@ class OpenLoopSettings:
     parameters: Mapping[str, float]
     initial: Mapping[str, float]
     method: str
+    start: float = 0.0
 
 
 @lru_cache(maxsize=32)
@@ -80,13 +87,53 @@ def simulate(source: ModelSource, settings: OpenLoopSettings) -> dict[str, Any]:
     with _located(source, NonFinite):
         found = simulate_open_loop(
             model,
-            np.linspace(0.0, settings.horizon, settings.points),
+            np.linspace(settings.start, settings.start + settings.horizon, settings.points),
             settings.inputs,
             settings.parameters,
             settings.initial,
             method=settings.method,
         )
+    return _simulation_answer(model, settings, found)
 
+
+def control(source: ModelSource, settings: OpenLoopSettings, loops: Sequence[ControlLoop]) -> dict[str, Any]:
+    """A simulation under control as the API answers it, arrays as ndarrays."""
+    from looplab.engine.nonlinear.control_loop.simulation import simulate_control
+
+    with _located(source):
+        model = model_of(source)
+    with _located(source, NonFinite):
+        found = simulate_control(
+            model,
+            np.linspace(0.0, settings.horizon, settings.points),
+            loops,
+            settings.inputs,
+            settings.parameters,
+            settings.initial,
+            method=settings.method,
+        )
+    return {
+        **_simulation_answer(model, settings, found),
+        "loops": [
+            {
+                "output": loop.output,
+                "input": loop.input,
+                **{name: getattr(loop, name) for name in ("r", "y_m", "u_command", "u", "history_error")},
+                "modes": _modes(found.t, loop.auto),
+                "metrics": asdict(loop.metrics),
+            }
+            for loop in found.loops
+        ],
+    }
+
+
+def _modes(t: FloatArray, auto: npt.NDArray[np.bool_]) -> list[dict[str, Any]]:
+    """The mode at the start, and each change as it is first seen."""
+    first = [0, *(1 + np.flatnonzero(auto[1:] != auto[:-1])).tolist()]
+    return [{"t": float(t[i]), "mode": "auto" if auto[i] else "manual"} for i in first]
+
+
+def _simulation_answer(model: CompiledModel, settings: OpenLoopSettings, found: Simulation) -> dict[str, Any]:
     def by_name(names: tuple[str, ...], values: Any) -> dict[str, Any]:
         return {name: np.ascontiguousarray(column) for name, column in zip(names, values.T, strict=True)}
 
@@ -96,6 +143,7 @@ def simulate(source: ModelSource, settings: OpenLoopSettings) -> dict[str, Any]:
         "t": found.t,
         "states": by_name(model.state_names, found.x),
         "outputs": by_name(model.output_names, found.y),
+        "variables": by_name(model.variable_names, _variables(model, settings.parameters, found)),
         "inputs": by_name(model.input_names, found.u),
         "events": [
             {
@@ -110,6 +158,21 @@ def simulate(source: ModelSource, settings: OpenLoopSettings) -> dict[str, Any]:
         "truncated_reason": found.truncated_reason,
         "calls": found.calls,
     }
+
+
+def _variables(model: CompiledModel, parameters: Mapping[str, float], found: Simulation) -> np.ndarray:
+    """The variables along a run, shape (count, variables); nan where one has no finite value."""
+    p = model.parameters(parameters)
+    none = (float("nan"),) * len(model.variable_names)
+
+    def at(t: float, x: list[float], u: list[float]) -> tuple[float, ...]:
+        try:
+            return model.variables(t, x, u, p)
+        except NonFinite:
+            return none
+
+    rows = [at(*point) for point in zip(found.t.tolist(), found.x.tolist(), found.u.tolist(), strict=True)]
+    return np.array(rows, dtype=float).reshape(len(rows), len(model.variable_names))
 
 
 def validate(text: bytes) -> dict[str, Any]:

@@ -1,7 +1,8 @@
 """The JSON shapes of systems, controllers and loops, shared by the API and the labs, and their way to the engine."""
 
 from looplab.schemas.base import Model, json_path, located
-from looplab.schemas.controllers import Controller, ParallelPID, StandardPID
+from looplab.schemas.control_loops import ControlLoopShape
+from looplab.schemas.controllers import AnyPID, Controller, ParallelPID, StandardPID
 from looplab.schemas.courses import Course, InputCourses
 from looplab.schemas.inputs import InputShape
 from looplab.schemas.loops import Loop
@@ -17,6 +18,8 @@ from looplab.schemas.systems import (
 )
 
 __all__ = [
+    "AnyPID",
+    "ControlLoopShape",
     "Controller",
     "Course",
     "ExpressionSystem",

@@ -61,7 +61,7 @@ class ParallelPID(Model):
         return self.to_engine().to_latex()
 
 
-def _tag(value: Any) -> str | None:
+def controller_tag(value: Any) -> str | None:
     """Which member of the union a request (or a model instance) means."""
     kind = value.get("type") if isinstance(value, dict) else getattr(value, "type", None)
     form = value.get("form", "ideal") if isinstance(value, dict) else getattr(value, "form", "ideal")
@@ -69,6 +69,11 @@ def _tag(value: Any) -> str | None:
         return None
     return "pid-parallel" if kind == "pid" and form == "parallel" else kind
 
+
+AnyPID = Annotated[
+    Annotated[StandardPID, Tag("pid")] | Annotated[ParallelPID, Tag("pid-parallel")],
+    Discriminator(controller_tag, custom_error_type="controller_type", custom_error_message="type must be 'pid'"),
+]
 
 Controller = Annotated[
     Annotated[StandardPID, Tag("pid")]
@@ -80,7 +85,7 @@ Controller = Annotated[
     | Annotated[ExpressionSystem, Tag("expr")]
     | Annotated[StateSpaceSystem, Tag("ss")],
     Discriminator(
-        _tag,
+        controller_tag,
         custom_error_type="controller_type",
         custom_error_message="type must be one of 'pid', 'tf', 'zpk', 'fopdt', 'sopdt', 'expr', 'ss'",
     ),

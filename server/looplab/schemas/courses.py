@@ -64,12 +64,14 @@ class Course(Model):
         return course
 
 
-def _kind(value: object) -> str:
+def course_kind(value: object) -> str:
     """Told apart by their shape, so that a mistake in one is not reported as one in the other."""
     return "course" if isinstance(value, dict | Course) else "number"
 
 
 InputCourses = Annotated[
-    dict[str, Annotated[Annotated[float, Tag("number")] | Annotated[Course, Tag("course")], Discriminator(_kind)]],
+    dict[
+        str, Annotated[Annotated[float, Tag("number")] | Annotated[Course, Tag("course")], Discriminator(course_kind)]
+    ],
     Field(max_length=50, description="By input: a number, or what it does over time. Left out: nominal."),
 ]

@@ -107,3 +107,20 @@ def test_curve_is_the_response_and_has_no_corners_near_minus_one(text: str) -> N
     z = curve.re + 1j * curve.im
     near = np.minimum(np.abs(z[1:] + 1), np.abs(z[:-1] + 1)) < 2
     assert np.abs(np.diff(z))[near].max() < 0.25
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["2 exp(-0.5 s)/(s+1)^3", "4.781 exp(-0.1 s)/(0.5s+1)", "0.9 exp(-5 s)/(s+1)", "0.5 exp(-s)", "exp(-s) (s+1)/s"],
+)
+def test_a_curve_with_dead_time_is_smooth_with_some_hundred_points(text: str) -> None:
+    """A chord is seen by its distance from the curve: half-way between two points, against the size of the picture."""
+    L = parse_transfer_function(text)
+    curve = nyquist_curve(L)
+    assert curve.omega.size < 1200
+    z = curve.re + 1j * curve.im
+    half = L.response(np.sqrt(curve.omega[1:] * curve.omega[:-1]))
+    chord = z[1:] - z[:-1]
+    away = np.abs(((half - z[:-1]) / chord).imag) * np.abs(chord)
+    seen = np.maximum(np.abs(z[1:]), np.abs(z[:-1])) < 10
+    assert away[seen].max() < 0.01

@@ -9,7 +9,7 @@ from hypothesis import assume, given, note
 from independent import rhp_closed_loop_poles
 from looplab.engine.frequency import margins, nyquist_count
 from looplab.engine.loop import PID, FeedbackLoop
-from looplab.engine.stability import closed_loop_poles, closed_loop_verdict, gain_ranges
+from looplab.engine.stability import closed_loop_poles, closed_loop_verdict, count_in_rectangle, gain_ranges
 from looplab.engine.systems import TransferFunction, parse_transfer_function
 from strategies import controllers, effort, systems
 
@@ -201,3 +201,23 @@ def test_of_poles_above_one_another_the_slowest_is_named() -> None:
     """0.5 e^{-s} = -1: s = ln 0.5 + j pi (2k+1)."""
     found = closed_loop_poles(loop("exp(-s)", 0.5)).poles
     assert found[:4] == pytest.approx(np.log(0.5) + 1j * np.pi * np.array([1, -1, 3, -3]), abs=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("plant", "C"),
+    [
+        ("exp(-0.5 s)/(s+1)^3", PID(1.6, 2.0, 0.5)),
+        ("exp(-0.1 s)/(0.5s+1)", PID(4.0, 0.4)),
+        ("exp(-s)/(s+1)", PID(0.5, 1.5)),
+    ],
+)
+def test_the_chain_of_dead_time_poles_has_no_gap(plant: str, C: PID) -> None:
+    """As many as the argument principle counts lie right of the last one listed, up to its height."""
+    closed = loop(plant, C)
+    poles = closed_loop_poles(closed).poles
+    left = 0.5 * (poles.real[-1] + poles.real[-3])  # the last are a pair
+    listed = poles[poles.real > left]
+    top = 1.05 * np.abs(listed.imag).max()
+    count = count_in_rectangle(closed.open_loop, 1.0, left, 10.0, -top, top)
+    assert count == listed.size
+    assert count > 6

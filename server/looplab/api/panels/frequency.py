@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -44,9 +43,7 @@ def nyquist(context: LoopContext) -> dict[str, Any]:
 
 def margins_panel(context: LoopContext) -> dict[str, Any]:
     """Margins and peaks; infinite or undefined ones are null with a reason."""
-    result = asdict(margins(context.loop.open_loop))
-    result["closed_loop_stable"] = context.verdict.closed_loop_stable
-    return result
+    return vars(margins(context.loop.open_loop)) | {"closed_loop_stable": context.verdict.closed_loop_stable}
 
 
 def sensitivity(context: LoopContext) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -20,7 +19,7 @@ from looplab.engine.systems import TransferFunction
 
 def verdict(context: LoopContext) -> dict[str, Any]:
     """Stable, marginal or unstable, in a sentence."""
-    return asdict(context.verdict)
+    return dict(vars(context.verdict))
 
 
 def poles(context: LoopContext) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from looplab.api.panels.context import LoopContext
-from looplab.engine.loop import Response, step_metrics
+from looplab.engine.loop import Response, loop_metrics
 from looplab.engine.loop.gang_of_six import GANG, gang_steps
 
 
@@ -32,11 +32,8 @@ def step(context: LoopContext) -> dict[str, Any]:
 
 def metrics(context: LoopContext) -> dict[str, Any]:
     """Overshoot, rise, settling, offset, error integrals and effort, undefined ones with their reason."""
-    result, stable = context.step, context.verdict.closed_loop_stable
-    return {
-        "setpoint": vars(step_metrics(result.setpoint, setpoint=1.0, stable=stable)),
-        "load": vars(step_metrics(result.load, setpoint=0.0, stable=stable)),
-    }
+    setpoint, load = loop_metrics(context.step, stable=context.verdict.closed_loop_stable)
+    return {"setpoint": vars(setpoint), "load": vars(load)}
 
 
 def gang(context: LoopContext) -> dict[str, Any]:

@@ -1,1 +1,44 @@
-"""One file a family of routes."""
+"""One family of routes a file; ROUTERS holds them in the order of the API's description."""
+
+from looplab.api.routes import (
+    compare,
+    connect,
+    frequency,
+    gain_map,
+    health,
+    labs,
+    laplace,
+    loop,
+    models,
+    optimal_tuning,
+    plants,
+    response,
+    root_locus,
+    routh,
+    stability,
+    state_space,
+    tune,
+)
+
+ROUTERS = tuple(
+    family.router
+    for family in (
+        health,
+        loop,
+        connect,
+        frequency,
+        root_locus,
+        tune,
+        optimal_tuning,
+        compare,
+        gain_map,
+        laplace,
+        routh,
+        stability,
+        response,
+        state_space,
+        plants,
+        models,
+        labs,
+    )
+)

@@ -8,16 +8,16 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Body, Path
 from starlette.responses import Response
 
-from looplab.api.answers.nonlinear import PlantAnswer, PlantList, SimulationAnswer
+from looplab.api.answers.nonlinear import ControlAnswer, PlantAnswer, PlantList, SimulationAnswer
 from looplab.api.docs import BUSY, ERRORS
 from looplab.api.encode import json_response
 from looplab.api.errors import ApiError
-from looplab.api.simulations import SimulationRequest, Workers, open_loop_settings
+from looplab.api.simulations import ControlRequest, SimulationRequest, Workers, control_loops, open_loop_settings
 from looplab.api.strict import StrictRoute
-from looplab.engine.nonlinear import CompiledModel, latex_equations
-from looplab.jobs.tasks import PLANT, ModelSource, simulate
+from looplab.engine.nonlinear import CompiledModel, latex_equations, slowest_time_constant
+from looplab.jobs.tasks import PLANT, ModelSource, control, simulate
 from looplab.labs.text import render_math
-from looplab.plants import UnknownPlant, load_plant, plant_document, plant_ids
+from looplab.plants import UnknownPlant, group_of, load_plant, plant_document, plant_drawing, plant_ids, shelved
 
 router = APIRouter(tags=["plants"], route_class=StrictRoute)
 
@@ -27,21 +27,74 @@ EXAMPLES: dict[str, Any] = {
     "as it is": {"value": {"horizon": 20, "points": 101}},
     "with another solver": {"value": {"horizon": 5, "points": 51, "method": "BDF"}},
 }
+CONTROL_EXAMPLES: dict[str, Any] = {
+    "the reactor held where it is unstable": {
+        "value": {
+            "horizon": 8,
+            "points": 161,
+            "operating_point": "middle",
+            "loops": [
+                {
+                    "output": "T",
+                    "input": "Q",
+                    "setpoint": {"level": 385.1107, "add": [{"type": "step", "amplitude": 5, "start": 1}]},
+                    "controller": {"type": "pid", "Kc": 1e6, "tau_I": 0.5, "action": "direct"},
+                    "anti_windup": "back_calculation",
+                    "sensor": {"lag": {"tau": 0.05}},
+                }
+            ],
+        }
+    },
+    "with a sampled controller, noise and a dead time, first in manual": {
+        "value": {
+            "horizon": 8,
+            "points": 161,
+            "operating_point": "middle",
+            "loops": [
+                {
+                    "output": "T",
+                    "input": "Q",
+                    "setpoint": 385.1107,
+                    "controller": {"type": "pid", "Kc": 5e5, "tau_I": 1, "action": "direct"},
+                    "sampling_time": 0.05,
+                    "sensor": {"theta": 0.05},
+                    "noise": {"std": 0.2, "seed": 1},
+                    "modes": [{"t": 0, "mode": "manual"}, {"t": 0.5, "mode": "auto"}],
+                }
+            ],
+        }
+    },
+}
 
 
 @cache
 def _summaries() -> list[dict[str, Any]]:
-    return [_summary(load_plant(plant_id)) for plant_id in plant_ids()]
+    return [_summary(load_plant(plant_id)) for plant_id in shelved(plant_ids())]
 
 
 def _summary(model: CompiledModel) -> dict[str, Any]:
     document = model.document
     return {
         **{name: getattr(document, name) for name in ("id", "title", "summary", "notes", "time_unit")},
+        "group": group_of(document.id),
         "inputs": model.input_names,
         "states": model.state_names,
         "outputs": model.output_names,
         "operating_points": [point.name for point in document.operating_points],
+        "drawing": plant_drawing(document.id),
+        "values": _values(model),
+    }
+
+
+def _values(model: CompiledModel) -> dict[str, float]:
+    """Every signal at the model's own initial state."""
+    at = (0.0, model.x0, model.u0, model.p0)
+    return {
+        **dict(zip(model.parameter_names, model.p0, strict=True)),
+        **dict(zip(model.input_names, model.u0, strict=True)),
+        **dict(zip(model.variable_names, model.variables(*at), strict=True)),
+        **dict(zip(model.output_names, model.outputs(*at), strict=True)),
+        **dict(zip(model.state_names, model.x0, strict=True)),
     }
 
 
@@ -64,12 +117,22 @@ def list_plants() -> Response:
     responses={200: {"model": PlantAnswer}, 422: ERRORS[422], **NOT_FOUND},
 )
 def show_plant(plant_id: PlantId) -> Response:
-    """The plant's document, as an author would write it, and its equations as formulas."""
+    """The plant's document, as an author would write it, its equations as formulas, and its drawing."""
+    model = _find(plant_id)
     equations = [
         {"path": each.path, "latex": each.latex, "mathml": render_math(each.latex, display=True)}
-        for each in latex_equations(_find(plant_id))
+        for each in latex_equations(model)
     ]
-    return json_response({"document": plant_document(plant_id), "equations": equations})
+    return json_response(
+        {
+            "document": plant_document(plant_id),
+            "equations": equations,
+            "group": group_of(plant_id),
+            "drawing": plant_drawing(plant_id),
+            "values": _values(model),
+            "time_scale": slowest_time_constant(model),
+        }
+    )
 
 
 @router.post(
@@ -86,4 +149,18 @@ async def simulate_plant(
     """
     settings = open_loop_settings(request, _find(plant_id).document)
     answer = await workers.run(simulate, ModelSource(PLANT, plant_id), settings)
+    return json_response(answer, request.arrays)
+
+
+@router.post(
+    "/plants/{plant_id}/control",
+    summary="Control a plant",
+    responses={200: {"model": ControlAnswer}, **ERRORS, **NOT_FOUND, **BUSY},
+)
+async def control_plant(
+    plant_id: PlantId, request: Annotated[ControlRequest, Body(openapi_examples=CONTROL_EXAMPLES)], workers: Workers
+) -> Response:
+    """A plant with up to three PID loops, continuous or sampled, with saturation, manual and auto, valve and sensor."""
+    settings = open_loop_settings(request, _find(plant_id).document)
+    answer = await workers.run(control, ModelSource(PLANT, plant_id), settings, control_loops(request))
     return json_response(answer, request.arrays)

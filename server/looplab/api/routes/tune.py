@@ -1,159 +1,151 @@
-"""Controller settings by named rules."""
+"""Controller settings by named rules, and the rules themselves."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Body
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field
 from starlette.responses import Response
 
-from looplab.api.answers.tune import TuneAnswer
+from looplab.api.answers.tune import RuleList, TuneAnswer
 from looplab.api.docs import ERRORS
 from looplab.api.encode import json_response
 from looplab.api.strict import StrictRoute
+from looplab.api.tuning_request import KnownPlantRequest, basis_answer, forms_answer, gains_answer
 from looplab.engine.errors import EngineError
-from looplab.engine.identification import two_point
-from looplab.engine.systems import FOPDT
-from looplab.engine.tuning import RULES, UltimatePoint, ultimate_point
+from looplab.engine.tuning import RULES, Gains, KnownPlant, Options, Rule, RuleName, TypeName
 from looplab.labs.text import render_math
-from looplab.schemas import Model, System, located
 
 router = APIRouter(tags=["tuning"], route_class=StrictRoute)
 
-RuleName = Literal["ziegler_nichols", "cohen_coon"]
-TypeName = Literal["P", "PI", "PID"]
 ALPHA = 0.1
 
 
-class ModelParameters(Model):
-    """A first-order model with dead time."""
+class TuneRequest(KnownPlantRequest):
+    """What is known of the plant, and the rules and types of controller wanted."""
 
-    K: float
-    tau: Annotated[float, Field(gt=0)]
-    theta: Annotated[float, Field(ge=0)]
-
-
-class UltimateParameters(Model):
-    """Ultimate gain and period, as an experiment gives them."""
-
-    Ku: float
-    Pu: Annotated[float, Field(gt=0)]
-
-    @field_validator("Ku")
-    @classmethod
-    def _not_zero(cls, Ku: float) -> float:
-        if Ku == 0:
-            raise ValueError("Ku must not be zero")
-        return Ku
+    rules: Annotated[list[RuleName], Field(min_length=1, max_length=32)] | None = Field(
+        default=None, description="Left out, every rule."
+    )
+    types: Annotated[list[TypeName], Field(min_length=1, max_length=8)] | None = Field(
+        default=None, description="Left out, each rule's own types."
+    )
 
 
-class TuneRequest(Model):
-    """What is known of the plant: the plant itself, a first-order model, or its ultimate gain and period."""
-
-    plant: System | None = None
-    model: ModelParameters | None = None
-    ultimate: UltimateParameters | None = None
-    rules: Annotated[list[RuleName], Field(min_length=1, max_length=16)] | None = None
-    types: Annotated[list[TypeName], Field(min_length=1, max_length=8)] = Field(default=["P", "PI", "PID"])
-
-    @model_validator(mode="after")
-    def _one_source(self) -> TuneRequest:
-        if self.plant is None and self.model is None and self.ultimate is None:
-            raise ValueError("give one of plant, model or ultimate")
-        if self.plant is not None and (self.model is not None or self.ultimate is not None):
-            raise ValueError("give the plant, or a model and/or ultimate values of it, not both")
-        return self
+def _formula(latex: str | None) -> dict[str, str] | None:
+    return None if latex is None else {"latex": latex, "mathml": render_math(latex)}
 
 
-class _PlantData:
-    """The ultimate point and the model that rules start from; a refusal is kept to be told with each rule."""
-
-    def __init__(self, request: TuneRequest) -> None:
-        self.given: dict[str, Any] = {"ultimate": None, "model": None}
-        self.refusals: dict[str, str] = {}
-        self.how = "as given"
-        if request.plant is not None:
-            self._from_plant(request)
-        if request.model is not None:
-            with located("model"):
-                model = FOPDT(request.model.K, request.model.tau, request.model.theta)
-            self.given["model"] = model
-            if request.ultimate is None:
-                self._try("ultimate", lambda: ultimate_point(model.to_transfer_function()))
-        if request.ultimate is not None:
-            Ku, Pu = request.ultimate.Ku, request.ultimate.Pu
-            self.given["ultimate"] = UltimatePoint(Ku, Pu, 6.283185307179586 / Pu)
-            if request.model is None:
-                self.refusals["model"] = "this rule needs a model or the plant, not Ku and Pu"
-
-    def _from_plant(self, request: TuneRequest) -> None:
-        assert request.plant is not None
-        with located("plant"):
-            plant = request.plant.to_engine().require_proper()
-        self._try("ultimate", lambda: ultimate_point(plant))
-        self._try("model", lambda: two_point(plant))
-        exact = plant.order == 1 and not plant.zeros.size
-        self.how = "the plant itself" if exact else "through 28.3 % and 63.2 % of the plant's exact step response"
-
-    def _try(self, name: str, find: Any) -> None:
-        try:
-            self.given[name] = find()
-        except EngineError as error:
-            self.refusals[name] = error.message
-
-
-def _settings(rule_id: str, type_: str, data: _PlantData) -> dict[str, Any]:
-    rule = RULES[rule_id]
-    latex = rule.formulas[type_]
+def _settings(rule: Rule, type_: str, known: KnownPlant, options: Options) -> dict[str, Any]:
     out: dict[str, Any] = {
-        "rule": rule_id,
+        "rule": rule.id,
         "name": rule.name,
+        "family": rule.family,
         "type": type_,
         "Kc": None,
         "tau_I": None,
         "tau_D": None,
         "alpha": ALPHA,
         "valid": False,
-        "reason": data.refusals.get(rule.needs),
-        "formula": {"latex": latex, "mathml": render_math(latex)},
+        "reason": None,
+        "formula": _formula(rule.formula(type_)),
         "source": rule.source,
+        "validity": rule.validity,
+        "published": None,
+        "note": None,
+        "basis": None,
+        "series": None,
+        "series_reason": None,
+        "parallel": None,
     }
-    source = data.given[rule.needs]
-    if source is None:
-        return out
     try:
-        found = rule.apply(source, type_)
+        found = known.tune(rule, type_, options)
     except EngineError as error:
-        return out | {"reason": error.message}
-    return out | {"Kc": found.Kc, "tau_I": found.tau_I, "tau_D": found.tau_D, "alpha": found.alpha, "valid": True}
+        return out | {"reason": error.message, "series_reason": "the rule does not apply"}
+    out |= {name: getattr(found, name) for name in ("Kc", "tau_I", "tau_D", "alpha", "note")}
+    if found.published is not None:
+        out["published"] = {"form": rule.form, **gains_answer(found.published)}
+    ideal = Gains(found.Kc, found.tau_I, found.tau_D or 0.0)
+    return (
+        out
+        | forms_answer(ideal)
+        | {
+            "valid": True,
+            "formula": _formula(found.formula),
+            "basis": basis_answer(known.for_rule(rule, type_), rule, known),
+        }
+    )
+
+
+def _ultimate(known: KnownPlant) -> dict[str, Any]:
+    try:
+        point = known.ultimate()
+    except EngineError as error:
+        return {"Ku": None, "Pu": None, "omega_180": None, "reason": error.message}
+    return {"Ku": point.Ku, "Pu": point.Pu, "omega_180": point.omega_180, "reason": None}
+
+
+def _model(known: KnownPlant) -> dict[str, Any] | None:
+    if known.plant is None:
+        return None
+    try:
+        model = known.reaction_curve()
+    except EngineError as error:
+        return {"K": None, "tau": None, "theta": None, "how": error.message}
+    how = known.describe(model, RULES["cohen_coon"])
+    return {"K": model.K, "tau": model.tau, "theta": model.theta, "how": how}
 
 
 EXAMPLES = {
     "a plant": {"value": {"plant": {"type": "expr", "text": "1/(s+1)^3"}, "rules": ["ziegler_nichols"]}},
     "a model": {"value": {"model": {"K": 1, "tau": 0.5, "theta": 0.1}, "rules": ["cohen_coon"]}},
     "an experiment": {"value": {"ultimate": {"Ku": 8, "Pu": 3.6276}, "types": ["PID"], "rules": ["ziegler_nichols"]}},
+    "a relay": {"value": {"relay": {"amplitude": 1, "swing": 0.16, "Pu": 3.6}, "rules": ["astrom_hagglund_relay"]}},
+    "an integrating plant": {
+        "value": {"plant": {"type": "expr", "text": "1/(s (s+1)^2)"}, "rules": ["simc"], "tau_c": 2}
+    },
 }
 
 
 @router.post("/tune", summary="Settings by tuning rules", responses={200: {"model": TuneAnswer}, **ERRORS})
 def tune(request: Annotated[TuneRequest, Body(openapi_examples=EXAMPLES)]) -> Response:
-    """Settings for the ideal form by each rule and controller type, with formula and source.
+    """Settings for the ideal form by each rule and controller type, with formula, source and the data used.
 
-    A rule outside its range is in the list too, with `valid: false` and the reason.
+    A rule outside its range is in the list too, with `valid: false` and the reason. Each rule reduces the plant to the
+    model it was made for: half rule for SIMC, reaction curve for the others; an integrating plant to an integrator.
     """
-    data = _PlantData(request)
-    rules = dict.fromkeys(request.rules or RULES)
-    settings = [_settings(rule, type_, data) for rule in rules for type_ in dict.fromkeys(request.types)]
-    point, model = data.given["ultimate"], data.given["model"]
-    ultimate = None
-    if point is not None:
-        ultimate = {"Ku": point.Ku, "Pu": point.Pu, "omega_180": point.omega_180, "reason": None}
-    elif "ultimate" in data.refusals:
-        ultimate = {"Ku": None, "Pu": None, "omega_180": None, "reason": data.refusals["ultimate"]}
-    found = None
-    if model is not None:
-        found = {"K": model.K, "tau": model.tau, "theta": model.theta, "how": data.how}
-    elif request.ultimate is None:
-        found = {"K": None, "tau": None, "theta": None, "how": data.refusals["model"]}
-    return json_response({"settings": settings, "ultimate": ultimate, "model": found})
+    known, options = request.known(), request.options()
+    settings = [
+        _settings(RULES[name], type_, known, options)
+        for name in dict.fromkeys(request.rules or RULES)
+        for type_ in dict.fromkeys(request.types or RULES[name].types)
+    ]
+    return json_response({"settings": settings, "ultimate": _ultimate(known), "model": _model(known)})
+
+
+@router.get("/tune/rules", summary="The tuning rules", responses={200: {"model": RuleList}})
+def rules() -> Response:
+    """Every rule with its formulas and source, what it needs to know of the plant, and the range it refuses outside."""
+    return json_response(
+        {
+            "rules": [
+                {
+                    "id": rule.id,
+                    "name": rule.name,
+                    "family": rule.family,
+                    "source": rule.source,
+                    "validity": rule.validity,
+                    "needs": rule.needs,
+                    "form": rule.form,
+                    "types": list(rule.types),
+                    "formulas": [
+                        {"kind": kind, "type": type_, **(_formula(latex) or {})}
+                        for kind, by_type in rule.formulas.items()
+                        for type_, latex in by_type.items()
+                    ],
+                }
+                for rule in RULES.values()
+            ]
+        }
+    )

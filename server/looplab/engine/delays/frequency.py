@@ -12,10 +12,10 @@ from looplab.engine.delays.resolvent import transfer_and_slope, transfer_matrix
 from looplab.engine.delays.system import DelaySystem
 from looplab.engine.delays.verdict import delay_verdict
 from looplab.engine.errors import InvalidInput
+from looplab.engine.frequency.bode import Bode
 from looplab.engine.frequency.bracketing import refine_brackets
 from looplab.engine.frequency.margins import GainCrossover, Margins, PhaseCrossover
 from looplab.engine.frequency.nyquist import NyquistCount, NyquistCurve
-from looplab.engine.frequency.response import Bode
 from looplab.engine.systems.polynomial import FloatArray
 
 

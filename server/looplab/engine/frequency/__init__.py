@@ -2,9 +2,10 @@
 
 from looplab.engine.frequency.asymptotes import BodeAsymptotes, Corner, bode_asymptotes
 from looplab.engine.frequency.bandwidth import Bandwidth, bandwidth, closed_loop_bandwidth
+from looplab.engine.frequency.bode import Bode, bode
 from looplab.engine.frequency.margins import GainCrossover, Margins, PhaseCrossover, margins
 from looplab.engine.frequency.nyquist import NyquistCount, NyquistCurve, nyquist_count, nyquist_curve
-from looplab.engine.frequency.response import Bode, bode, default_grid, frequency_grid, frequency_range
+from looplab.engine.frequency.response import default_grid, frequency_grid, frequency_range
 
 __all__ = [
     "Bandwidth",

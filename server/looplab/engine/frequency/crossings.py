@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from math import exp
+from math import ceil, exp, floor, inf, log, log10, pi
 
 import numpy as np
 import numpy.typing as npt
@@ -17,7 +17,7 @@ from looplab.engine.frequency.response import (
     log_magnitude,
     phase_rad,
 )
-from looplab.engine.frequency.sampled import Sampled, sampled
+from looplab.engine.frequency.sampled import Sampled, UnitCurve, search_grid
 from looplab.engine.frequency.scalar import newton_in_bracket, scalar_loop
 from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.transfer_function import TransferFunction
@@ -37,27 +37,48 @@ OFTEN = f"more than {MAX_DELAY_POINTS // 16} times before |L| falls below 1"
 
 
 @dataclass(frozen=True)
+class PhaseCrossings:
+    """Where the curve of unit gain crosses the negative real axis: the same for every gain of one sign.
+
+    Attributes
+    ----------
+    curve : UnitCurve
+        L of unit gain on the search grid, crossovers included.
+    omega, log_magnitude, direction : ndarray
+        Frequencies [rad/time], ln \\|L\\| there, and -1 where the phase falls, +1 where it rises. Passing over a pole
+        on the imaginary axis counts, with infinite \\|L\\|.
+    start_phase : float or None
+        Phase where the curve first leaves the negative real axis [rad]; None where it never does.
+    """
+
+    curve: UnitCurve
+    omega: FloatArray
+    log_magnitude: FloatArray
+    direction: FloatArray
+    start_phase: float | None
+
+
+@dataclass(frozen=True)
 class Crossings:
     """All crossovers of an open loop.
 
     Attributes
     ----------
-    omega : ndarray, shape (n,)
-        The search grid, crossovers included [rad/time].
+    grid : Sampled
+        L on the search grid, phase crossovers included.
     gain_omega, gain_phase : ndarray
         Frequencies with \\|L\\| = 1 [rad/time] and the phase there [rad].
     phase_omega, phase_log_magnitude, phase_direction : ndarray
-        Frequencies with L on the negative real axis [rad/time], ln \\|L\\| there, and -1 where the phase falls, +1
-        where it rises. Passing over a pole on the imaginary axis counts, with infinite \\|L\\|.
+        As in PhaseCrossings, for the gain of the loop.
     start_phase : float or None
-        Phase where the curve first leaves the negative real axis [rad]; None where it never does.
+        As in PhaseCrossings.
     cut : bool
         The dead time makes further phase crossovers beyond the grid (for a strictly proper L with \\|L\\| below 0.05).
     overrun : bool
         The dead time turns the phase more than 250 times before \\|L\\| falls below 1: the lists are not complete.
     """
 
-    omega: FloatArray
+    grid: Sampled
     gain_omega: FloatArray
     gain_phase: FloatArray
     phase_omega: FloatArray
@@ -68,28 +89,37 @@ class Crossings:
     overrun: bool
 
 
-def _search_grid(L: TransferFunction) -> tuple[Sampled, bool]:
-    """L on the search grid, and whether |L| is above 1 beyond its end: the dead time turns too often to follow."""
-    overrun, reach = False, np.inf
+@lru_cache(maxsize=64)
+def _largest_beyond(unit: TransferFunction, low: float, high: float) -> float:
+    """Largest ln|L| of unit gain between two frequencies far out [rad/time]."""
+    return float(log_magnitude(unit, np.logspace(log10(low), max(log10(low), log10(high)) + 0.1, 200)).max())
+
+
+@lru_cache(maxsize=64)
+def fastest_root(unit: TransferFunction) -> float:
+    """Size of the largest pole or zero [rad/time]; 0 where there is none."""
+    return float(np.abs(np.concatenate([unit.zeros, unit.poles])).max(initial=0.0))
+
+
+def _search_range(L: TransferFunction) -> tuple[float, float, bool]:
+    """Ends of the search grid, and whether |L| is above 1 beyond: the dead time turns too often to follow."""
+    overrun, reach = False, inf
     low, high = frequency_range(L)
+    widest = high
     low, high = low * 1e-2, high * 1e2
     if L.theta > 0:
         # The grid follows the turns of the dead time up to here.
-        reach = MAX_DELAY_POINTS * np.pi / (8.0 * L.theta)
-        outside = np.logspace(np.log10(reach), max(np.log10(reach), np.log10(high)) + 0.1, 200)
-        overrun = bool(L.relative_degree > 0 and L.gain and log_magnitude(L, outside).max() > 0)
-        # Beyond this |L| < NEGLIGIBLE for good; the dead time would add crossovers without end.
+        reach = MAX_DELAY_POINTS * pi / (8.0 * L.theta)
         if L.relative_degree > 0 and L.gain:
-            roots = np.concatenate([L.zeros, L.poles])
-            top = 2.0 * np.abs(roots).max(initial=0.0)
+            overrun = _largest_beyond(L.unit, reach, high) + log(abs(L.gain)) > 0
+            # Beyond this |L| < NEGLIGIBLE for good; the dead time would add crossovers without end.
             fade = (abs(L.gain) / NEGLIGIBLE) ** (1.0 / L.relative_degree)
-            high = max(top, fade, 4.0 * np.pi / L.theta) * 1.1
+            high = max(2.0 * fastest_root(L.unit), fade, 4.0 * pi / L.theta) * 1.1
         else:
-            high = max(frequency_range(L)[1], 40.0 * np.pi / L.theta)
+            high = max(widest, 40.0 * pi / L.theta)
         high = min(high, reach)
     # Whole decades, so that a moved gain finds the same grid again.
-    ends = float(10.0 ** np.floor(np.log10(min(low, high / 10)))), float(10.0 ** np.ceil(np.log10(high)))
-    return sampled(L, ends[0], min(ends[1], reach)), overrun
+    return 10.0 ** floor(log10(min(low, high / 10))), min(10.0 ** ceil(log10(high)), reach), overrun
 
 
 def _on_axis(roots: npt.NDArray[np.complex128]) -> FloatArray:
@@ -97,16 +127,21 @@ def _on_axis(roots: npt.NDArray[np.complex128]) -> FloatArray:
     return np.asarray(roots.imag[(roots.imag > 0) & (np.abs(roots.real) <= AXIS_GAP * np.abs(roots))])
 
 
-def _gain_crossovers(L: TransferFunction, omega: FloatArray, log_mag: FloatArray) -> FloatArray:
-    sign = log_mag > 0
-    at = np.flatnonzero(sign[1:] != sign[:-1])
-    a, b = np.log(omega[at]), np.log(omega[at + 1])
+def _gain_crossovers(L: TransferFunction, grid: Sampled) -> FloatArray:
+    level = -grid.shift
+    above = grid.curve.log_magnitude > level
+    at = np.flatnonzero(above[1:] != above[:-1])
+    omega = grid.omega
     if at.size <= FEW:
-        f = scalar_loop(L).log_magnitude
+        f, at_grid = scalar_loop(L.unit).log_magnitude, grid.curve.log_magnitude
         return np.array(
-            [exp(newton_in_bracket(f, low, high)) for low, high in zip(a.tolist(), b.tolist(), strict=True)]
+            [
+                exp(newton_in_bracket(f, log(omega[i]), log(omega[i + 1]), at_grid[i : i + 2].tolist(), level))
+                for i in at.tolist()
+            ]
         )
-    return np.exp(refine_brackets(lambda x: log_magnitude(L, np.exp(x)), a, b))
+    x = np.log(omega)
+    return np.exp(refine_brackets(lambda x: log_magnitude(L, np.exp(x)), x[at], x[at + 1]))
 
 
 def _phase_crossovers(L: TransferFunction, omega: FloatArray, phase: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -128,38 +163,54 @@ def _phase_crossovers(L: TransferFunction, omega: FloatArray, phase: FloatArray)
 
     if at.size <= FEW:
         f = scalar_loop(L).phase
-        ends = zip(a.tolist(), b.tolist(), level, strict=True)
-        return np.array([exp(newton_in_bracket(f, low, high, value)) for low, high, value in ends]), np.array(direction)
+        ends = np.stack([phase[at], phase[at + 1]], axis=1).tolist()
+        brackets = zip(a.tolist(), b.tolist(), ends, level, strict=True)
+        return np.array([exp(newton_in_bracket(f, *bracket)) for bracket in brackets]), np.array(direction)
     return np.exp(refine_brackets(lambda x: phase_rad(L, np.exp(x)) - target, a, b)), np.array(direction)
 
 
-@lru_cache(maxsize=256)
-def crossings(L: TransferFunction) -> Crossings:
-    """Find every crossover of the open loop L; cached by content."""
-    # On a hidden mode of the imaginary axis L is 0/0.
-    L, _ = split_hidden_modes(L)
-    empty = np.zeros(0)
-    grid, overrun = _search_grid(L)
-    omega = grid.omega
-    if L.gain == 0.0:
-        return Crossings(omega, empty, empty, empty, empty, empty, None, False, False)
-    log_mag, phase = grid.log_magnitude, grid.phase
-    gain = _gain_crossovers(L, omega, log_mag)
-    where, direction = _phase_crossovers(L, omega, phase)
+@lru_cache(maxsize=64)
+def _of_unit_gain(unit: TransferFunction, low: float, high: float) -> PhaseCrossings:
+    omega = search_grid(unit, low, high)
+    phase = phase_rad(unit, omega)
+    where, direction = _phase_crossovers(unit, omega, phase)
     # As long as the curve lies on the real axis but for rounding it has crossed nothing.
     off_axis = np.abs(np.mod(phase, 2.0 * np.pi) - np.pi) > ON_AXIS
     start = int(np.argmax(off_axis)) if off_axis.any() else None
     if start is None:
-        where, direction = empty, empty
+        where, direction = np.zeros(0), np.zeros(0)
     elif start:
         later = where > omega[start]
         where, direction = where[later], direction[later]
-    size = log_magnitude(L, where)
-    for b in _on_axis(L.poles):
+    size = log_magnitude(unit, where)
+    for b in _on_axis(unit.poles):
         size[np.abs(where - b) <= 2 * AXIS_GAP * b] = np.inf
-    for b in _on_axis(L.zeros):
+    for b in _on_axis(unit.zeros):
         size[np.abs(where - b) <= 2 * AXIS_GAP * b] = -np.inf
-    every = np.unique(np.concatenate([omega, gain, where]))
     start_phase = None if start is None else float(phase[start])
-    cut = L.theta > 0
-    return Crossings(every, gain, phase_rad(L, gain), where, size, direction, start_phase, cut, overrun)
+    every = np.unique(np.concatenate([omega, where])) if where.size else omega
+    return PhaseCrossings(UnitCurve(unit, every), where, size, direction, start_phase)
+
+
+@lru_cache(maxsize=64)
+def crossings(L: TransferFunction) -> Crossings:
+    """Find every crossover of the open loop L; cached by content, and up to the gain where the gain does not matter."""
+    # On a hidden mode of the imaginary axis L is 0/0.
+    L, _ = split_hidden_modes(L)
+    low, high, overrun = _search_range(L)
+    if L.gain == 0.0:
+        empty = np.zeros(0)
+        grid = Sampled(UnitCurve(L.unit, search_grid(L.unit, low, high)), 0.0)
+        return Crossings(grid, empty, empty, empty, empty, empty, None, False, False)
+    unit = _of_unit_gain(L.unit, low, high)
+    grid = Sampled(unit.curve, L.gain)
+    gain = _gain_crossovers(L, grid)
+    if gain.size <= FEW:
+        angle = scalar_loop(L.unit).phase
+        gain_phase = np.array([angle(log(w))[0] for w in gain.tolist()])
+    else:
+        gain_phase = phase_rad(L, gain)
+    return Crossings(
+        grid, gain, gain_phase, unit.omega, unit.log_magnitude + grid.shift, unit.direction, unit.start_phase,
+        L.theta > 0, overrun,
+    )  # fmt: skip

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import lru_cache
-from math import exp, log
+from functools import lru_cache, partial
+from math import degrees, exp, isfinite, log, log10, pi
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +12,8 @@ import numpy.typing as npt
 from looplab.engine.frequency.crossings import OFTEN, crossings
 from looplab.engine.frequency.nyquist import nyquist_count
 from looplab.engine.frequency.response import AXIS_GAP
-from looplab.engine.frequency.scalar import illinois, scalar_loop
+from looplab.engine.frequency.sampled import Sampled
+from looplab.engine.frequency.scalar import newton_in_bracket, scalar_loop
 from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.transfer_function import TransferFunction
 
@@ -58,40 +59,41 @@ class Margins:
 _NAMES = ("GM", "GM_dB", "omega_180", "PM_deg", "omega_c", "delay_margin", "Ms", "omega_Ms", "Mt", "omega_Mt")
 
 
-def _peak(L: TransferFunction, omega: FloatArray, kind: str) -> tuple[float, float]:
-    """Largest |S| or |T| over omega, refined where the slope changes sign; (value, omega)."""
+def _peaks_on(grid: Sampled) -> list[tuple[float, float]]:
+    """Largest |S| and largest |T| on a grid, refined where their slopes change sign: (value, omega) of each."""
+    omega = grid.omega
+    with np.errstate(all="ignore"):
+        factors = np.empty((2, omega.size), dtype=complex)
+        np.reciprocal(1.0 + grid.value, out=factors[0])
+        np.multiply(grid.value, factors[0], out=factors[1])
+        sizes = np.abs(factors)
+        # Slopes over ln omega: Im(T q) of ln|S| and -Im(S q) of ln|T|, with q = omega L'/L.
+        slopes = (factors[::-1] * grid.curve.rate).imag
+        slopes[1] *= -1.0
+        summit = (slopes[:, :-1] > 0) & (slopes[:, 1:] <= 0)
+    sizes[np.isnan(sizes)] = 0.0
+    loop, gain = scalar_loop(grid.curve.unit), abs(grid.gain)
+    out = []
+    for row, part in enumerate("ST"):
+        size = sizes[row]
+        best = int(size.argmax())
+        top, where = float(size[best]), float(omega[best])
+        at = np.flatnonzero(summit[row])
+        # Only the highest summits can win; the rest need no refinement.
+        if at.size > 8:
+            at = at[np.argsort(np.maximum(size[at], size[at + 1]))[-8:]]
+        for i in at.tolist():
+            slope = partial(loop.sensitivity_slope, gain=gain, part=part)
+            x = newton_in_bracket(slope, log(omega[i]), log(omega[i + 1]), slopes[row, i : i + 2].tolist())
+            peak = loop.peak_size(x, gain, part)
+            if peak > top:
+                top, where = peak, exp(x)
+        out.append((top, where))
+    return out
 
-    value, q = _on_grid(L, omega)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        S = 1.0 / (1.0 + value)
-        size = np.abs(S if kind == "S" else value * S)
-        # d ln|S| / d omega = Im(T q), d ln|T| / d omega = -Im(S q), with q = L'/L.
-        rate = np.imag((value if kind == "S" else -1.0) * S * q)
-    size = np.nan_to_num(size, nan=0.0, posinf=np.inf)
-    at = np.flatnonzero((rate[:-1] > 0) & (rate[1:] <= 0))
-    # Only the highest summits can win; the rest need no refinement.
-    if at.size > 8:
-        at = at[np.argsort(np.maximum(size[at], size[at + 1]))[-8:]]
-    best = int(np.argmax(size))
-    top, where = float(size[best]), float(omega[best])
-    loop = scalar_loop(L)
-    for i in at.tolist():
-        x = illinois(lambda x: loop.sensitivity_slope(x, kind), log(omega[i]), log(omega[i + 1]))
-        peak = loop.peak_size(x, kind)
-        if peak > top:
-            top, where = peak, exp(x)
-    return top, where
 
-
-def _on_grid(L: TransferFunction, omega: FloatArray) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128]]:
-    """L and L'/L at j omega."""
-    s = (1j * omega).astype(complex)
-    return L(s), L.log_derivative(s)
-
-
-def _sensitivity_peaks(L: TransferFunction, omega: FloatArray) -> dict[str, float]:
-    Ms, omega_Ms = _peak(L, omega, "S")
-    Mt, omega_Mt = _peak(L, omega, "T")
+def _sensitivity_peaks(L: TransferFunction, grid: Sampled) -> dict[str, float]:
+    (Ms, omega_Ms), (Mt, omega_Mt) = _peaks_on(grid)
     # Limits of L at both ends of the frequency axis, where they are finite.
     ends: list[tuple[float, float]] = []
     if L.origin_order <= 0:
@@ -119,7 +121,7 @@ def _sensitivity_peaks(L: TransferFunction, omega: FloatArray) -> dict[str, floa
     return {"Ms": Ms, "omega_Ms": omega_Ms, "Mt": Mt, "omega_Mt": omega_Mt}
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=64)
 def margins(L: TransferFunction) -> Margins:
     r"""Gain, phase and delay margins, all crossovers, and the peaks of the sensitivity functions.
 
@@ -162,51 +164,53 @@ def margins(L: TransferFunction) -> Margins:
     stable = count.Z == 0 and not count.through_minus_one and not stays
     reasons: dict[str, str] = {}
 
-    listed = np.isfinite(found.phase_log_magnitude)
     phase_crossovers = [
-        PhaseCrossover(float(w), float(np.exp(-m)))
-        for w, m in zip(found.phase_omega[listed], found.phase_log_magnitude[listed], strict=True)
+        PhaseCrossover(w, exp(-m))
+        for w, m in zip(found.phase_omega.tolist(), found.phase_log_magnitude.tolist(), strict=True)
+        if isfinite(m)
     ]
     if L.origin_order == 0 and L.origin_gain < 0:
         phase_crossovers.insert(0, PhaseCrossover(0.0, 1.0 / abs(L.origin_gain)))
     if found.cut:
         reasons["phase_crossovers"] = (
-            f"dead time makes them infinitely many: listed up to omega = {found.omega[-1]:.4g}"
+            f"dead time makes them infinitely many: listed up to omega = {found.grid.omega[-1]:.4g}"
         )
     GM = omega_180 = GM_dB = None
     if phase_crossovers:
-        nearest = min(phase_crossovers, key=lambda c: abs(np.log(c.GM)))
-        GM, omega_180, GM_dB = nearest.GM, nearest.omega, float(20 * np.log10(nearest.GM))
+        nearest = min(phase_crossovers, key=lambda c: abs(log(c.GM)))
+        GM, omega_180, GM_dB = nearest.GM, nearest.omega, 20.0 * log10(nearest.GM)
     else:
         text = "infinite: the phase never reaches -180 deg" if L.gain else "undefined: the open loop is zero"
         reasons |= dict.fromkeys(("GM", "GM_dB", "omega_180"), text)
 
-    wrapped = np.mod(found.gain_phase, 2 * np.pi) - np.pi  # 0 on the negative real axis
-    gain_crossovers = [
-        GainCrossover(float(w), float(np.degrees(p))) for w, p in zip(found.gain_omega, wrapped, strict=True)
+    gain_omega, gain_phase = found.gain_omega.tolist(), found.gain_phase.tolist()
+    gain_crossovers = [  # the phase is 0 on the negative real axis
+        GainCrossover(w, degrees(p % (2 * pi) - pi)) for w, p in zip(gain_omega, gain_phase, strict=True)
     ]
     PM_deg = omega_c = delay_margin = None
     if gain_crossovers:
         tightest = min(gain_crossovers, key=lambda c: abs(c.PM_deg))
         PM_deg, omega_c = tightest.PM_deg, tightest.omega
         if stable:
-            room = np.mod(found.gain_phase + np.pi, 2 * np.pi) / found.gain_omega
-            delay_margin = float(room.min())
+            delay_margin = min((p + pi) % (2 * pi) / w for w, p in zip(gain_omega, gain_phase, strict=True))
         else:
             reasons["delay_margin"] = "undefined: the closed loop is not stable as it is"
     else:
         text = "infinite: the gain never reaches 1"
         if not L.gain:
             text = "undefined: the open loop is zero"
-        elif abs(L.response(found.omega[:1])[0]) > 1.0:
+        elif abs(L.response(found.grid.omega[:1])[0]) > 1.0:
             text = "undefined: the gain never falls to 1"
         reasons |= dict.fromkeys(("PM_deg", "omega_c", "delay_margin"), text)
 
     peaks: dict[str, float | None] = (
-        dict(_sensitivity_peaks(reduced, found.omega)) if L.gain else dict(Ms=1.0, omega_Ms=0.0, Mt=0.0, omega_Mt=0.0)
+        dict(_sensitivity_peaks(reduced, found.grid)) if L.gain else dict(Ms=1.0, omega_Ms=0.0, Mt=0.0, omega_Mt=0.0)
     )
-    # Where one is infinite L is -1, and so is the other.
+    # Where one is infinite L is -1, and so is the other; along the real axis the peak may hide between grid points.
     infinite = any(value is not None and not value < 1e8 for value in (peaks["Ms"], peaks["Mt"]))
+    on_minus_one = [c.omega for c in gain_crossovers if abs(c.PM_deg) < 1e-6]
+    if on_minus_one and not infinite:
+        infinite, peaks["omega_Ms"], peaks["omega_Mt"] = True, on_minus_one[0], on_minus_one[0]
     for name in ("Ms", "Mt"):
         if infinite:
             peaks[name] = None

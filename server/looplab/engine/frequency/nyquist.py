@@ -8,11 +8,21 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from looplab.engine.frequency.crossings import OFTEN, crossings
-from looplab.engine.frequency.response import AXIS_GAP, phase_rad
+from looplab.engine.frequency.crossings import OFTEN, crossings, fastest_root
+from looplab.engine.frequency.response import AXIS_GAP
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
+
+# Closer to -1 than this the curve passes through it.
+ON_CURVE = 1e-9
+# Beyond this, next to poles on the axis, the curve is not drawn.
+LARGEST_DRAWN = 1e6
+OUT_OF_PICTURE = 50.0
+# Near the origin steps of this size are not seen.
+SMALLEST_SEEN = 1e-3
+# A gap of the grid is filled with so many points at most.
+MOST_PARTS = 32
 
 
 @dataclass(frozen=True)
@@ -66,7 +76,7 @@ def _start_turns(L: TransferFunction, phase: float) -> int:
     return turns + (2 * between if phase < start else -2 * between)
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=64)
 def nyquist_count(L: TransferFunction) -> NyquistCount:
     r"""Count the closed-loop poles in the right half-plane by Nyquist's criterion, dead time exact.
 
@@ -100,17 +110,17 @@ def nyquist_count(L: TransferFunction) -> NyquistCount:
         )
     if found.overrun:
         return NyquistCount(None, P, None, f"the curve encircles -1 {OFTEN}: the loop is unstable")
-    touching = bool(np.any(np.abs(found.phase_log_magnitude) < 1e-9))
-    touching |= bool(np.any(np.abs(np.mod(found.gain_phase, 2 * np.pi) - np.pi) < 1e-9))
-    if L.origin_order == 0 and abs(L.origin_gain + 1.0) < 1e-9:
+    size, direction = found.phase_log_magnitude.tolist(), found.phase_direction.tolist()
+    touching = any(abs(m) < ON_CURVE for m in size)
+    touching |= any(abs(p % (2.0 * np.pi) - np.pi) < ON_CURVE for p in found.gain_phase.tolist())
+    if L.origin_order == 0 and abs(L.origin_gain + 1.0) < ON_CURVE:
         touching = True
-    outside = found.phase_log_magnitude > 0
-    N = int(-2 * found.phase_direction[outside].sum())
+    N = int(-2 * sum(d for m, d in zip(size, direction, strict=True) if m > 0))
     if found.start_phase is not None:
         N += _start_turns(L, found.start_phase)
     if L.theta == 0 and L.relative_degree == 0 and L.gain < -1.0 and found.start_phase is not None:
         # The curve ends on the real axis left of -1; its mirror image takes over from there.
-        last = float(phase_rad(L, found.omega[-1:])[0])
+        last = float(found.grid.phase[-1])
         level = (2 * np.round((last - np.pi) / (2 * np.pi)) + 1) * np.pi
         if last != level:
             N += 1 if last > level else -1
@@ -129,34 +139,63 @@ class NyquistCurve:
     im: FloatArray
 
 
-def nyquist_curve(L: TransferFunction, max_turn: float = 0.06) -> NyquistCurve:
-    """The curve with a point wherever it turns: neighbours differ by at most ``max_turn`` where it is near -1.
+def nyquist_curve(L: TransferFunction, step: float = 0.03) -> NyquistCurve:
+    r"""The curve with its points as close as the eye needs, and no closer.
+
+    .. math:: |\Delta L| \le 2 h \sqrt{|L|\,(1 + |L|)}
+
+    A chord of that length leaves a circle of radius \|L\| around the origin by less than h^2/2 (1 + \|L\|).
 
     Parameters
     ----------
     L : TransferFunction
-    max_turn : float
-        Largest step, relative to 1 + \\|L\\| [-].
+    step : float
+        h [-]; where \|L\| > 50, out of the picture, ten times as much; by the twelfth turn of a dead time four times.
 
     Returns
     -------
     NyquistCurve
-        Points where \\|L\\| > 1e6 (next to poles on the axis) are left out.
+        Points where \|L\| > 1e6 (next to poles on the axis) are left out. A biproper L with dead time turns without
+        end: its curve ends where it has become its last circle, at 30 times the fastest root.
+
+    References
+    ----------
+    .. [1] K. J. Astrom, R. M. Murray, Feedback Systems, 2nd ed., Princeton 2021, sec. 10.2.
     """
-    omega = crossings(L).omega
-    value = L.response(omega)
-    for _ in range(4):
-        # Exactly on a pole of the axis the curve has no point.
-        finite = np.isfinite(value)
-        omega, value = omega[finite], value[finite]
-        size = np.abs(value)
-        near = np.minimum(size[1:], size[:-1])
-        # Next to a pole on the axis the steps cannot shrink: there the curve is out of the picture.
-        coarse = np.flatnonzero((np.abs(np.diff(value)) > max_turn * (1.0 + near)) & (near < 50.0))
-        if not coarse.size or omega.size > 6000:
-            break
-        middle = np.sqrt(omega[coarse] * omega[coarse + 1])
-        omega = np.insert(omega, coarse + 1, middle)
-        value = np.insert(value, coarse + 1, L.response(middle))
-    keep = np.isfinite(value) & (np.abs(value) < 1e6)
-    return NyquistCurve(omega[keep], value.real[keep], value.imag[keep])
+    grid = crossings(L).grid
+    omega, value, phase = grid.omega, grid.value, grid.phase
+    size = np.abs(value)
+    drawn = size < LARGEST_DRAWN
+    if L.theta and L.relative_degree == 0:
+        drawn &= omega <= max(30.0 * fastest_root(L.unit), 4.0 * np.pi / L.theta)
+    if not drawn.all():
+        omega, value, phase, size = omega[drawn], value[drawn], phase[drawn], size[drawn]
+    if not omega.size:
+        return NyquistCurve(omega, value.real.copy(), value.imag.copy())
+    near = np.minimum(size[1:], size[:-1])
+    length = np.abs(value[1:] - value[:-1]) / (step * np.sqrt((near + SMALLEST_SEEN) * (1.0 + near)))
+    length[near > OUT_OF_PICTURE] *= 0.1
+    if L.theta:
+        length /= np.minimum(1.0 + np.abs(phase[1:] - phase[0]) / (8.0 * np.pi), 4.0)
+    # A point stays where the length from the start reaches another whole number, and beside a gap to be filled.
+    whole = np.floor(np.cumsum(np.minimum(length, 1.0)))
+    keep = np.ones(omega.size, dtype=bool)
+    keep[1:-1] = (whole[1:] > whole[:-1]) | (length[1:] > 1.0)
+    between = _between(omega, length)
+    if not between.size:
+        omega, value = omega[keep], value[keep]
+    else:
+        omega = np.concatenate([omega[keep], between])
+        order = omega.argsort()
+        omega, value = omega[order], np.concatenate([value[keep], L.response(between)])[order]
+    return NyquistCurve(omega, value.real.copy(), value.imag.copy())
+
+
+def _between(omega: FloatArray, length: FloatArray) -> FloatArray:
+    """Frequencies that cut each interval longer than 1 into parts that are not."""
+    gaps = np.flatnonzero(length > 1.0)
+    parts = np.minimum(np.ceil(length[gaps]), MOST_PARTS).astype(int)
+    extra = parts - 1
+    left = np.repeat(gaps, extra)
+    part = 1 + np.arange(left.size) - np.repeat(np.cumsum(extra) - extra, extra)
+    return np.asarray(omega[left] * (omega[left + 1] / omega[left]) ** (part / np.repeat(parts, extra)))

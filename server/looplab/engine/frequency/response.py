@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from contextlib import suppress
 from functools import lru_cache
+from math import ceil, floor, isfinite, log10
 
 import numpy as np
 import numpy.typing as npt
@@ -65,29 +66,28 @@ def log_magnitude(system: TransferFunction, omega: FloatArray) -> FloatArray:
     return out
 
 
-def _corners(system: TransferFunction) -> FloatArray:
-    roots = np.concatenate([system.zeros, system.poles])
-    corners = np.abs(roots[roots != 0])
-    if system.theta > 0:
-        corners = np.append(corners, 1.0 / system.theta)
-    return corners if corners.size else np.ones(1)
+@lru_cache(maxsize=64)
+def _corners(unit: TransferFunction) -> tuple[float, float]:
+    """The slowest and the fastest corner, the dead time's included [rad/time]; 1 where there is none."""
+    sizes = np.abs(np.concatenate([unit.zeros, unit.poles])).tolist()
+    corners = [r for r in sizes if r] + ([1.0 / unit.theta] if unit.theta > 0 else [])
+    return (min(corners), max(corners)) if corners else (1.0, 1.0)
 
 
 def _unit_asymptotes(system: TransferFunction) -> list[float]:
     """Frequencies at which the low- and the high-frequency asymptote of |G| reach 1."""
     out = []
-    if system.gain and system.relative_degree:
-        out.append(abs(system.gain) ** (1.0 / system.relative_degree))
-    if system.gain and system.origin_order:
-        out.append(abs(system.origin_gain) ** (1.0 / system.origin_order))
-    return [w for w in out if np.isfinite(w) and w > 0]
+    for gain, order in ((system.gain, system.relative_degree), (system.origin_gain, system.origin_order)):
+        if system.gain and order:
+            with suppress(OverflowError, ZeroDivisionError):
+                out.append(abs(gain) ** (1.0 / order))
+    return [w for w in out if isfinite(w) and w > 0]
 
 
 def frequency_range(system: TransferFunction) -> tuple[float, float]:
     """Decades that hold every corner, the dead time and the crossings of the asymptotes, one to spare each side."""
-    marks = np.concatenate([_corners(system), _unit_asymptotes(system)])
-    low, high = np.floor(np.log10(marks.min()) + 1e-9) - 1, np.ceil(np.log10(marks.max()) - 1e-9) + 1
-    return float(10.0**low), float(10.0**high)
+    marks = [*_corners(system.unit), *_unit_asymptotes(system)]
+    return 10.0 ** (floor(log10(min(marks)) + 1e-9) - 1), 10.0 ** (ceil(log10(max(marks)) - 1e-9) + 1)
 
 
 def _resonances(system: TransferFunction) -> FloatArray:
@@ -140,42 +140,9 @@ def frequency_grid(system: TransferFunction, low: float | None = None, high: flo
     return grid[keep]
 
 
-@dataclass(frozen=True)
-class Bode:
-    """omega [rad/time], mag_dB [dB] and phase_deg [deg] (anchored at omega -> 0), all of one shape."""
-
-    omega: FloatArray
-    mag_dB: FloatArray
-    phase_deg: FloatArray
-
-
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=64)
 def default_grid(system: TransferFunction) -> FloatArray:
     """frequency_grid over the automatic range, cached and read-only."""
     grid = frequency_grid(system)
     grid.setflags(write=False)
     return grid
-
-
-def bode(system: TransferFunction, omega: FloatArray | None = None) -> Bode:
-    r"""Bode data with the dead time exact.
-
-    .. math:: 20\log_{10}|G(i\omega)|, \qquad \arg G(i\omega) = \sum\arg - \omega\theta
-
-    Parameters
-    ----------
-    system : TransferFunction
-    omega : ndarray, shape (n,), or None
-        Positive frequencies [rad/time]; None takes an adaptive grid.
-
-    Returns
-    -------
-    Bode
-        mag_dB is -inf where the response is zero.
-
-    References
-    ----------
-    .. [1] D. E. Seborg et al., Process Dynamics and Control, 3rd ed., Wiley 2011, ch. 14.
-    """
-    w = default_grid(system) if omega is None else np.asarray(omega, dtype=float)
-    return Bode(w, log_magnitude(system, w) * (20.0 / np.log(10.0)), np.degrees(phase_rad(system, w)))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
+from math import inf, log
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -13,22 +14,84 @@ from looplab.engine.frequency.response import frequency_grid, log_magnitude, pha
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+Array = TypeVar("Array", FloatArray, ComplexArray)
 
 
 MOST_EXTREMA = 200
 
 
-@dataclass(frozen=True)
+def _read_only(array: Array) -> Array:
+    array.setflags(write=False)
+    return array
+
+
+class UnitCurve:
+    """A system of gain 1 or -1 over a grid; each part is computed when first asked for, read-only, shape (n,).
+
+    Attributes
+    ----------
+    omega : ndarray
+        The grid [rad/time].
+    log_magnitude, phase : ndarray
+        ln \\|G\\| and the phase, anchored at omega -> 0 [rad].
+    value : ndarray of complex
+        G(j omega).
+    rate : ndarray of complex
+        omega G'(j omega)/G(j omega): its real part is the slope of the phase over ln omega, its imaginary part the
+        negative slope of ln \\|G\\|.
+    """
+
+    def __init__(self, unit: TransferFunction, omega: FloatArray) -> None:
+        self.unit, self.omega = unit, _read_only(omega)
+
+    @cached_property
+    def log_magnitude(self) -> FloatArray:
+        """ln|G|."""
+        return _read_only(log_magnitude(self.unit, self.omega))
+
+    @cached_property
+    def phase(self) -> FloatArray:
+        """Phase [rad]."""
+        return _read_only(phase_rad(self.unit, self.omega))
+
+    @cached_property
+    def value(self) -> ComplexArray:
+        """G(j omega)."""
+        return _read_only(self.unit.response(self.omega))
+
+    @cached_property
+    def rate(self) -> ComplexArray:
+        """omega G'/G at j omega."""
+        return _read_only(self.omega * self.unit.log_derivative((1j * self.omega).astype(complex)))
+
+
 class Sampled:
-    """ln|G| and phase [rad] over omega [rad/time], shape (n,), for the gain of the system they were asked of."""
+    """A system of any gain on the grid of its unit curve: ln|G|, phase [rad] and value over omega [rad/time]."""
 
-    omega: FloatArray
-    log_magnitude: FloatArray
-    phase: FloatArray
+    def __init__(self, curve: UnitCurve, gain: float) -> None:
+        self.curve, self.gain = curve, gain
+        self.omega, self.phase = curve.omega, curve.phase
+
+    @property
+    def shift(self) -> float:
+        """What the gain adds to ln|G| of the unit curve."""
+        return log(abs(self.gain)) if self.gain else -inf
+
+    @cached_property
+    def log_magnitude(self) -> FloatArray:
+        """ln|G|, shape (n,)."""
+        return self.curve.log_magnitude + self.shift if self.gain else np.full(self.omega.shape, -inf)
+
+    @cached_property
+    def value(self) -> ComplexArray:
+        """G(j omega), shape (n,)."""
+        with np.errstate(invalid="ignore"):  # infinite on a pole of the axis
+            return self.curve.value * abs(self.gain)
 
 
-@lru_cache(maxsize=128)
-def _grid(unit: TransferFunction, low: float, high: float) -> FloatArray:
+@lru_cache(maxsize=64)
+def search_grid(unit: TransferFunction, low: float, high: float) -> FloatArray:
     """The adaptive grid with every extremum of magnitude and phase on it, so that no pair of crossings hides."""
     omega = frequency_grid(unit, low, high)
 
@@ -43,25 +106,30 @@ def _grid(unit: TransferFunction, low: float, high: float) -> FloatArray:
     x = np.log(omega)
     turning = []
     with np.errstate(all="ignore"):
-        for slope in (magnitude_slope, phase_slope):
-            rate = slope(x)
-            at = np.flatnonzero(np.sign(rate[1:]) * np.sign(rate[:-1]) < 0)
-            if at.size <= MOST_EXTREMA:
+        rate = omega * unit.log_derivative((1j * omega).astype(complex))
+        for slope, on_grid in ((magnitude_slope, -rate.imag), (phase_slope, rate.real)):
+            sign = np.sign(on_grid)
+            at = np.flatnonzero(sign[1:] * sign[:-1] < 0)
+            if at.size and at.size <= MOST_EXTREMA:
                 turning.append(np.exp(refine_brackets(slope, x[at], x[at + 1])))
-    return np.unique(np.concatenate([omega, *turning]))
+    return _read_only(np.unique(np.concatenate([omega, *turning])) if turning else omega)
 
 
-@lru_cache(maxsize=256)
-def _shape(unit: TransferFunction, grid_of: TransferFunction, low: float, high: float) -> tuple[FloatArray, FloatArray]:
-    omega = _grid(grid_of, low, high)
-    return log_magnitude(unit, omega), phase_rad(unit, omega)
+@lru_cache(maxsize=64)
+def _on_grid_of(unit: TransferFunction, grid_of: TransferFunction, low: float, high: float) -> UnitCurve:
+    return UnitCurve(unit, search_grid(grid_of, low, high))
+
+
+@lru_cache(maxsize=32)
+def _on_frequencies(unit: TransferFunction, omega: bytes) -> UnitCurve:
+    return UnitCurve(unit, np.frombuffer(omega))
 
 
 def sampled(system: TransferFunction, low: float, high: float, grid_of: TransferFunction | None = None) -> Sampled:
     """A system between two frequencies [rad/time], on its own adaptive grid or on that of another system."""
-    grid_of = (grid_of or system).unit
-    magnitude, phase = _shape(system.unit, grid_of, low, high)
-    if system.gain == 0.0:
-        return Sampled(_grid(grid_of, low, high), np.full(magnitude.shape, -np.inf), phase)
-    shift = np.log(abs(system.gain))
-    return Sampled(_grid(grid_of, low, high), magnitude + shift, phase)
+    return Sampled(_on_grid_of(system.unit, (grid_of or system).unit, low, high), system.gain)
+
+
+def sampled_at(system: TransferFunction, omega: FloatArray) -> Sampled:
+    """A system at given frequencies, shape (n,) [rad/time]."""
+    return Sampled(_on_frequencies(system.unit, omega.tobytes()), system.gain)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
+from itertools import zip_longest
 
 from looplab.engine.systems.transfer_function import TransferFunction
 
@@ -16,77 +17,90 @@ Slope = Callable[[float], tuple[float, float]]
 
 
 class ScalarLoop:
-    """L at s = j exp(x), as functions of x = ln omega."""
+    """L of unit gain at s = j exp(x), as functions of x = ln omega, each with its slope."""
 
-    def __init__(self, L: TransferFunction) -> None:
-        self.zeros: list[complex] = L.zeros.tolist()
-        self.poles: list[complex] = L.poles.tolist()
-        self.gain, self.theta = L.gain, L.theta
-        self.anchor = -0.5 * math.pi * L.origin_order - (math.pi if L.origin_gain < 0 else 0.0)
-
-    def log_derivative(self, s: complex) -> complex:
-        """L'(s)/L(s)."""
-        total: complex = -self.theta
-        for z in self.zeros:
-            total += 1.0 / ((s - z) or TINY)
-        for p in self.poles:
-            total -= 1.0 / ((s - p) or TINY)
-        return total
-
-    def value(self, s: complex) -> complex:
-        """L(s)."""
-        out = self.gain * cmath.exp(-self.theta * s)
-        for z, p in zip(self.zeros, self.poles, strict=False):
-            out *= (s - z) / ((s - p) or TINY)
-        for z in self.zeros[len(self.poles) :]:
-            out *= s - z
-        for p in self.poles[len(self.zeros) :]:
-            out /= (s - p) or TINY
-        return out
+    def __init__(self, unit: TransferFunction) -> None:
+        self.zeros: list[complex] = unit.zeros.tolist()
+        self.poles: list[complex] = unit.poles.tolist()
+        self.sign, self.theta = unit.gain, unit.theta
+        self.anchor = -0.5 * math.pi * unit.origin_order - (math.pi if unit.origin_gain < 0 else 0.0)
+        # Real part, its size, imaginary part and +1 for a zero, -1 for a pole.
+        self.roots = [
+            (abs(r.real), r.imag, sign) for roots, sign in ((self.zeros, 1.0), (self.poles, -1.0)) for r in roots
+        ]
+        # The same of roots off the origin, with the sense in which each turns.
+        self.turning = [
+            (abs(r.real), r.imag, -sign if r.real > 0 else sign)
+            for roots, sign in ((self.zeros, 1.0), (self.poles, -1.0))
+            for r in roots
+            if r
+        ]
 
     def log_magnitude(self, x: float) -> tuple[float, float]:
-        """ln |L| and its slope over x."""
+        """ln |L| and its slope."""
         omega = math.exp(x)
-        s = 1j * omega
-        out = math.log(abs(self.gain))
-        for z in self.zeros:
-            out += math.log(abs(s - z) or TINY)
-        for p in self.poles:
-            out -= math.log(abs(s - p) or TINY)
-        return out, -self.log_derivative(s).imag * omega
+        out = slope = 0.0
+        for a, b, sign in self.roots:
+            rise = omega - b
+            size = math.hypot(a, rise) or TINY
+            out += sign * math.log(size)
+            slope += sign * (rise / size) / size
+        return out, slope * omega
 
     def phase(self, x: float) -> tuple[float, float]:
-        """Phase anchored at omega -> 0 and its slope over x [rad]."""
+        """Phase anchored at omega -> 0 and its slope [rad]."""
         omega = math.exp(x)
-        out = self.anchor - self.theta * omega
-        for roots, sign in ((self.zeros, 1.0), (self.poles, -1.0)):
-            for r in roots:
-                if r:
-                    turn = math.atan2(omega - r.imag, abs(r.real))
-                    out += -sign * turn if r.real > 0 else sign * turn
-        return out, self.log_derivative(1j * omega).real * omega
+        out, slope = self.anchor - self.theta * omega, -self.theta
+        for a, b, sense in self.turning:
+            rise = omega - b
+            size = math.hypot(a, rise) or TINY
+            out += sense * math.atan2(rise, a)
+            slope += sense * (a / size) / size
+        return out, slope * omega
 
-    def sensitivity_slope(self, x: float, part: str) -> float:
-        """d ln|S| / dx or d ln|T| / dx: Im(T q) omega and -Im(S q) omega with q = L'/L."""
+    def value_and_rates(self, s: complex, gain: float) -> tuple[complex, complex, complex]:
+        """L, q = L'/L and q' at s."""
+        value = self.sign * gain * cmath.exp(-self.theta * s)
+        q, dq = complex(-self.theta), 0j
+        for z, p in zip_longest(self.zeros, self.poles):
+            if z is not None:
+                value *= s - z
+                part = 1.0 / ((s - z) or TINY)
+                q += part
+                dq -= part * part
+            if p is not None:
+                part = 1.0 / ((s - p) or TINY)
+                value *= part
+                q -= part
+                dq += part * part
+        return value, q, dq
+
+    def sensitivity_slope(self, x: float, gain: float, part: str) -> tuple[float, float]:
+        """d ln|S| / dx or d ln|T| / dx for L of the given gain, and its slope.
+
+        With q = L'/L they are omega Im(T q) and -omega Im(S q); S' = -S T q and T' = S T q.
+        """
         omega = math.exp(x)
-        s = 1j * omega
-        value = self.value(s)
-        factor = value if part == "S" else -1.0
-        return (factor / (1.0 + value) * self.log_derivative(s)).imag * omega
+        value, q, dq = self.value_and_rates(1j * omega, gain)
+        S = 1.0 / ((1.0 + value) or TINY)
+        turn = value * S * S * q * q
+        factor = value * S if part == "S" else -S
+        slope = (factor * q).imag * omega
+        return slope, slope + (turn + factor * dq).real * omega * omega
 
-    def peak_size(self, x: float, part: str) -> float:
-        """|S| or |T|."""
-        value = self.value(1j * math.exp(x))
-        return abs((1.0 if part == "S" else value) / (1.0 + value))
+    def peak_size(self, x: float, gain: float, part: str) -> float:
+        """|S| or |T| for L of the given gain."""
+        value, _, _ = self.value_and_rates(1j * math.exp(x), gain)
+        return abs((1.0 if part == "S" else value) / ((1.0 + value) or TINY))
 
 
 @lru_cache(maxsize=64)
-def scalar_loop(L: TransferFunction) -> ScalarLoop:
-    """The scalar form of a system, cached by content."""
-    return ScalarLoop(L)
+def scalar_loop(unit: TransferFunction) -> ScalarLoop:
+    """The scalar form of a system of gain 1 or -1, cached by content."""
+    return ScalarLoop(unit)
 
 
-def newton_in_bracket(f: Slope, a: float, b: float, target: float = 0.0) -> float:
+def newton_in_bracket(f: Slope, a: float, b: float, ends: Sequence[float], target: float = 0.0) -> float:
     """Root of f - target between a and b by Newton's method, bisecting where a step would leave the bracket.
 
     Parameters
@@ -94,6 +108,8 @@ def newton_in_bracket(f: Slope, a: float, b: float, target: float = 0.0) -> floa
     f : callable
         x -> value and slope; f - target changes sign between a and b.
     a, b : float
+    ends : two floats
+        f(a) and f(b).
     target : float
 
     Returns
@@ -101,8 +117,12 @@ def newton_in_bracket(f: Slope, a: float, b: float, target: float = 0.0) -> floa
     float
         To rounding.
     """
-    high_at_b = f(b)[0] > f(a)[0]
-    x = 0.5 * (a + b)
+    at_a, at_b = ends
+    high_at_b = at_b > at_a
+    x = a + (b - a) * (target - at_a) / (at_b - at_a) if at_b != at_a else 0.5 * (a + b)
+    if not a < x < b:
+        x = 0.5 * (a + b)
+    last = b - a
     for _ in range(80):
         value, slope = f(x)
         value -= target
@@ -112,34 +132,12 @@ def newton_in_bracket(f: Slope, a: float, b: float, target: float = 0.0) -> floa
             b = x
         else:
             a = x
-        step = value / slope if slope else math.inf
-        new = x - step
+        new = x - value / slope if slope else math.inf
         if not a < new < b:
             new = 0.5 * (a + b)
-        if abs(new - x) <= 4e-16 * max(abs(x), 1e-3) or b - a <= 4e-16 * max(abs(x), 1e-3):
+        step, negligible = abs(new - x), 4e-16 * max(abs(x), 1e-3)
+        # Steps shrink as their squares: the next would be step^3 / last^2.
+        if step * step * step <= negligible * last * last or b - a <= negligible:
             return new
-        x = new
+        x, last = new, step
     return x
-
-
-def illinois(f: Callable[[float], float], a: float, b: float) -> float:
-    """Root of f between a and b by the Illinois variant of the false position, bisecting where that stalls.
-
-    References
-    ----------
-    .. [1] M. Dowell, P. Jarratt, BIT 11 (1971) 168-174.
-    """
-    fa, fb = f(a), f(b)
-    if fb == 0.0:
-        return b
-    for i in range(100):
-        x = 0.5 * (a + b) if fb == fa or i % 8 == 7 else b - fb * (b - a) / (fb - fa)
-        fx = f(x)
-        if fx == 0.0 or abs(b - a) <= 1e-14 * max(abs(x), 1e-3):
-            return x
-        if (fx > 0) != (fb > 0):
-            a, fa = b, fb
-        else:
-            fa *= 0.5
-        b, fb = x, fx
-    return b

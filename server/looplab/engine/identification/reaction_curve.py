@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from looplab.engine.errors import RuleNotApplicable
-from looplab.engine.loop.hermite import HermiteCurve
+from looplab.engine.loop.hermite import HermiteCurves
 from looplab.engine.loop.step_response import step_response
 from looplab.engine.systems.first_second_order import FOPDT
 from looplab.engine.systems.transfer_function import TransferFunction
@@ -54,17 +54,17 @@ def two_point(plant: TransferFunction) -> FOPDT:
     slow = float((-1.0 / P.poles.real).max())
     horizon = P.theta + _SLOWEST * slow * max(1, int(np.count_nonzero(-1.0 / P.poles.real > 0.3 * slow)))
     response = step_response(P.without_dead_time(), horizon - P.theta, 2000)
-    curve = HermiteCurve(response.t, response.y / K, response.dy / K)
+    curve = HermiteCurves(response.t, response.y[None] / K, response.dy[None] / K)
     if curve.y.min() < -1e-3 or curve.y.max() > 1.1:
         raise RuleNotApplicable(
             "the step response overshoots or starts in the wrong direction: a first-order model does not describe it",
             field="plant",
             hint="use the ultimate cycle instead",
         )
-    low, high = curve.crossings(1 - np.exp(-1 / 3)), curve.crossings(1 - np.exp(-1))
-    if not low.size or not high.size:
+    low, high = curve.crossings(0, 1 - np.exp(-1 / 3)), curve.crossings(0, 1 - np.exp(-1))
+    if not low or not high:
         raise RuleNotApplicable(
             "the step response jumps past its 28.3 % point: a first-order model does not describe it", field="plant"
         )
-    tau = 1.5 * float(high[0] - low[0])
-    return FOPDT(K, tau, P.theta + max(0.0, float(high[0]) - tau))
+    tau = 1.5 * (high[0] - low[0])
+    return FOPDT(K, tau, P.theta + max(0.0, high[0] - tau))

@@ -2,7 +2,7 @@
 
 from looplab.engine.loop.controllers import PID
 from looplab.engine.loop.feedback_loop import FeedbackLoop
-from looplab.engine.loop.metrics import StepMetrics, default_horizon, step_metrics
+from looplab.engine.loop.metrics import StepMetrics, default_horizon, loop_metrics, step_metrics
 from looplab.engine.loop.step_response import ClosedLoopStep, Response, closed_loop_step, step_response
 
 __all__ = [
@@ -13,6 +13,7 @@ __all__ = [
     "StepMetrics",
     "closed_loop_step",
     "default_horizon",
+    "loop_metrics",
     "step_metrics",
     "step_response",
 ]

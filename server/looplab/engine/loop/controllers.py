@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
+from math import isfinite
 
 import numpy as np
 
@@ -58,7 +60,7 @@ class PID:
     def __post_init__(self) -> None:
         for name in ("Kc", "tau_I", "tau_D", "alpha", "beta"):
             value = getattr(self, name)
-            if value is not None and not np.isfinite(value):
+            if value is not None and not isfinite(value):
                 raise InvalidInput(f"{name} must be a finite number", field=name)
         if self.tau_I is not None and self.tau_I <= 0:
             raise InvalidInput(
@@ -111,24 +113,8 @@ class PID:
 
     def to_transfer_function(self) -> TransferFunction:
         """Gc(s) from the error e = r - y to u, as zeros, poles and gain."""
-        gain = self.sign * self.Kc
-        zeros: list[complex] = []
-        poles: list[complex] = []
-        tau_I, tau_D, alpha = self.tau_I, self.tau_D, self.alpha
-        if tau_D and self.form == "ideal" and tau_I is not None:
-            zeros = list(roots(np.array([tau_I * tau_D * (1.0 + alpha), tau_I + alpha * tau_D, 1.0])))
-            poles = [0.0, -1.0 / (alpha * tau_D)]
-            gain *= (1.0 + alpha) / alpha
-        else:
-            if tau_I is not None:
-                zeros.append(-1.0 / tau_I)
-                poles.append(0.0)
-            if tau_D:
-                lead = tau_D * (1.0 + alpha) if self.form == "ideal" else tau_D
-                zeros.append(-1.0 / lead)
-                poles.append(-1.0 / (alpha * tau_D))
-                gain *= lead / (alpha * tau_D)
-        return TransferFunction(zeros, poles, gain)
+        unit = _per_gain(self.tau_I, self.tau_D, self.alpha, self.form)
+        return unit.with_gain(self.sign * self.Kc * unit.gain)
 
     def to_latex(self, digits: int = 4) -> str:
         """The controller with its numbers, in the form it is used."""
@@ -147,6 +133,28 @@ class PID:
             return rf"{head}\left(1 + {integral}\right){lead}" if integral else rf"{head}\,{lead}"
         terms = " + ".join(t for t in ("1", integral, rf"\frac{{{n(self.tau_D)}\,s}}{{{filtered}}}") if t)
         return rf"{head}\left({terms}\right)"
+
+
+@lru_cache(maxsize=128)
+def _per_gain(tau_I: float | None, tau_D: float | None, alpha: float, form: str) -> TransferFunction:
+    """Gc(s) for Kc = 1."""
+    gain = 1.0
+    zeros: list[complex] = []
+    poles: list[complex] = []
+    if tau_D and form == "ideal" and tau_I is not None:
+        zeros = list(roots(np.array([tau_I * tau_D * (1.0 + alpha), tau_I + alpha * tau_D, 1.0])))
+        poles = [0.0, -1.0 / (alpha * tau_D)]
+        gain = (1.0 + alpha) / alpha
+    else:
+        if tau_I is not None:
+            zeros.append(-1.0 / tau_I)
+            poles.append(0.0)
+        if tau_D:
+            lead = tau_D * (1.0 + alpha) if form == "ideal" else tau_D
+            zeros.append(-1.0 / lead)
+            poles.append(-1.0 / (alpha * tau_D))
+            gain = lead / (alpha * tau_D)
+    return TransferFunction(zeros, poles, gain)
 
 
 def require_causal(C: TransferFunction) -> None:

@@ -15,9 +15,16 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from numpy.lib.stride_tricks import as_strided
 
 from looplab.engine.errors import NoConvergence
-from looplab.engine.loop.shift_series import Symbol, circle_radius, pieces_of_dead_time, shift_series
+from looplab.engine.loop.shift_series import (
+    LARGEST_EXPONENTIAL,
+    Symbol,
+    circle_radius,
+    pieces_of_dead_time,
+    shift_series,
+)
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -97,7 +104,7 @@ def _march(F: FloatArray, x0: FloatArray, lag: int, count: int) -> FloatArray:
     if lag == 1:
         past = x.reshape(-1, x0.shape[1])
         for k in range(before + 1, count + before):
-            x[k] = flat @ past[(k - J) * n : k * n]
+            np.dot(flat, past[(k - J) * n : k * n], out=x[k])
     else:
         for k in range(before + 1, count + before):
             x[k] = flat @ x[k - 1 - before : k : lag].reshape(J * n, -1)
@@ -137,10 +144,9 @@ def _states(F: FloatArray, x0: FloatArray, grid: DelayGrid, count: int) -> Float
             hint="shorten the horizon or lower the gain",
         )
     x = _march(F, x0, grid.pieces, total)
-    before = (F.shape[0] - 1) * grid.pieces
-    return np.stack(
-        [x[before - j * grid.pieces : before - j * grid.pieces + total : every] for j in range(F.shape[0])], axis=1
-    )
+    J, (_, n, c) = F.shape[0], x.shape
+    first, piece, row, column = (J - 1) * grid.pieces, *x.strides
+    return as_strided(x[first:], (count, J, n, c), (every * piece, -grid.pieces * piece, row, column), writeable=False)
 
 
 def delayed_response(
@@ -173,15 +179,24 @@ def delayed_response(
     NoConvergence
         The dead time is too long for the speed of the loop and the horizon.
     """
-    grid = delay_grid(theta, horizon, points, pieces_of_dead_time(symbol, theta, circle_radius(neutral)))
+
+    def series(grid: DelayGrid, largest: float = np.inf) -> tuple[FloatArray, FloatArray] | None:
+        h, terms = grid.h / grid.pieces_per_step, int(grid.count * grid.h / theta) + 2
+        return shift_series(symbol, h, grid.samples, terms, neutral, largest)
+
+    # Mostly the dead time is short enough for one piece.
+    grid = delay_grid(theta, horizon, points)
+    found = series(grid, LARGEST_EXPONENTIAL)
+    if found is None:
+        grid = delay_grid(theta, horizon, points, pieces_of_dead_time(symbol, theta, circle_radius(neutral)))
+        found = series(grid)
+    assert found is not None
+    F, H = found
     steps = -(-grid.count // grid.samples)
     whole = steps
     if neutral > 1.0:
         steps_per_dead_time = grid.pieces / grid.pieces_per_step
         steps = min(steps, int((2 + np.log(LARGEST_STATE) / np.log(neutral)) * steps_per_dead_time) + 1)
-    terms = int(grid.count * grid.h / theta) + 2
-    h = grid.h / grid.pieces_per_step
-    F, H = shift_series(symbol, h, grid.samples, terms, neutral)
     states = _states(F, x0, grid, steps)
     J, q, p, n = H.shape
     kernel = H.transpose(1, 2, 0, 3).reshape(q * p, J * n)

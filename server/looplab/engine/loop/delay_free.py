@@ -33,13 +33,14 @@ def delay_free_response(
     ndarray, shape (count, p, c)
     """
     n, c = x0.shape
-    power = expm(A * h) if step is None else step
-    states = np.empty((n, count, c))
-    states[:, 0] = x0
+    power = (expm(A * h) if step is None else step).T
+    states = np.empty((count * c, n))
+    states[:c] = x0.T
     done = 1
     while done < count:
         more = min(done, count - done)
-        states[:, done : done + more] = (power @ states[:, :more].reshape(n, -1)).reshape(n, more, c)
-        power = power @ power
+        np.matmul(states[: more * c], power, out=states[done * c : (done + more) * c])
         done += more
-    return (C @ states.reshape(n, -1)).reshape(-1, count, c).transpose(1, 0, 2)
+        if done < count:
+            power = power @ power
+    return (states @ C.T).reshape(count, c, -1).transpose(0, 2, 1)

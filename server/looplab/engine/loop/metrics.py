@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from math import copysign
 
 import numpy as np
-import numpy.typing as npt
 
 from looplab.engine.loop.feedback_loop import FeedbackLoop
-from looplab.engine.loop.hermite import HermiteCurve
-from looplab.engine.loop.step_response import Response
+from looplab.engine.loop.hermite import HermiteCurves
+from looplab.engine.loop.step_response import ClosedLoopStep, Response
 
-FloatArray = npt.NDArray[np.float64]
+Numbers = dict[str, float | None]
 
 BAND = 0.02
 NUMBERS = (
@@ -55,64 +56,83 @@ class StepMetrics:
     reasons: dict[str, str] = field(default_factory=dict)
 
 
-def _rise(curve: HermiteCurve, final: float) -> float | None:
-    low, high = curve.crossings(0.1 * final), curve.crossings(0.9 * final)
-    return float(high[0] - low[0]) if low.size and high.size else None
-
-
-def _settling(curve: HermiteCurve, final: float, span: float) -> float | None:
-    """Last time outside the band around the final value; None when the record ends outside, or close to its end."""
-    if abs(curve.y[-1] - final) > BAND * span:
-        return None
-    edges = np.concatenate([curve.crossings(final + BAND * span), curve.crossings(final - BAND * span)])
-    return float(edges.max()) if edges.size else 0.0
-
-
-def _overshoots(curve: HermiteCurve, final: float, direction: float) -> tuple[FloatArray, FloatArray]:
+def _overshoots(curves: HermiteCurves, row: int, final: float, direction: float) -> tuple[list[float], list[float]]:
     """Times and heights of the successive summits beyond the final value."""
-    t, y = curve.extrema()
-    height = direction * (y - final)
-    beyond = height > 1e-9 * max(abs(final), 1e-9)
-    return t[beyond], height[beyond]
+    least = 1e-9 * max(abs(final), 1e-9)
+    heights = [(t, direction * (y - final)) for t, y in zip(*curves.extrema[row], strict=True)]
+    beyond = [(t, height) for t, height in heights if height > least]
+    return [t for t, _ in beyond], [height for _, height in beyond]
 
 
-def _shape(curve: HermiteCurve, final: float, out: dict[str, float | None], why: dict[str, str]) -> None:
+def _shape(curves: HermiteCurves, row: int, final: float, out: Numbers, why: dict[str, str]) -> None:
     """Peak, overshoot, rise, settling and decay of a response that moves from 0 to ``final``."""
-    direction = np.sign(final)
-    t_top, height = _overshoots(curve, final, direction)
-    if t_top.size:
-        i = int(np.argmax(height))
-        out["peak"], out["t_peak"] = float(final + direction * height[i]), float(t_top[i])
-        out["overshoot_pct"] = 100.0 * float(height[i]) / abs(final)
+    direction = copysign(1.0, final)
+    t_top, height = _overshoots(curves, row, final, direction)
+    if height:
+        highest = max(height)
+        out["peak"], out["t_peak"] = final + direction * highest, t_top[height.index(highest)]
+        out["overshoot_pct"] = 100.0 * highest / abs(final)
     else:
         out["overshoot_pct"] = 0.0
-        out["peak"] = float(direction * (direction * curve.y).max())
+        out["peak"] = float(direction * (direction * curves.y[row]).max())
         why["t_peak"] = "undefined: the response does not pass its final value"
-    out["t_rise"] = _rise(curve, final)
-    if out["t_rise"] is None:
+    low, high = (curves.first_crossing(row, part * final) for part in (0.1, 0.9))
+    if low is not None and high is not None:
+        out["t_rise"] = high - low
+    else:
         why["t_rise"] = "undefined: the response does not reach 90 % of its final value within the horizon"
-    out["t_settle"] = _settling(curve, final, abs(final))
+    out["t_settle"] = curves.last_outside(row, final, BAND * abs(final))
     if out["t_settle"] is None:
         why["t_settle"] = "undefined: not within 2 % of the final value at the end of the horizon"
-    if height.size >= 2:
-        out["decay_ratio"] = float(height[1] / height[0])
+    if len(height) >= 2:
+        out["decay_ratio"] = height[1] / height[0]
     else:
         why["decay_ratio"] = "undefined: there are not two overshoots within the horizon"
 
 
-def _disturbed(curve: HermiteCurve, final: float, out: dict[str, float | None], why: dict[str, str]) -> None:
+def _disturbed(curves: HermiteCurves, row: int, final: float, out: Numbers, why: dict[str, str]) -> None:
     """Peak and settling of a response that ends near where it began (a load step under control)."""
-    t, y = curve.extrema()
-    t, y = np.append(t, curve.t[[0, -1]]), np.append(y, curve.y[[0, -1]])
-    i = int(np.argmax(np.abs(y)))
-    out["peak"], out["t_peak"] = float(y[i]), float(t[i])
-    span = abs(out["peak"] or 0.0)
-    out["t_settle"] = _settling(curve, final, span) if span else 0.0
+    t, y = curves.extrema[row]
+    ends = [0, -1]
+    out["t_peak"], peak = max(
+        zip([*t, *curves.t[ends].tolist()], [*y, *curves.y[row, ends].tolist()], strict=True), key=lambda at: abs(at[1])
+    )
+    out["peak"], span = peak, abs(peak)
+    out["t_settle"] = curves.last_outside(row, final, BAND * span) if span else 0.0
     if out["t_settle"] is None:
         why["t_settle"] = "undefined: not within 2 % of the largest deviation at the end of the horizon"
     for name in ("overshoot_pct", "t_rise"):
         why[name] = "undefined: meant for a setpoint step, whose final value is not zero"
     why["decay_ratio"] = "undefined: meant for a setpoint step"
+
+
+def _judge(responses: Sequence[Response], setpoints: Sequence[float], stable: bool) -> list[StepMetrics]:
+    """Metrics of responses over one time axis: the curves of all are measured together."""
+    if not stable:
+        return [
+            StepMetrics(reasons=dict.fromkeys(NUMBERS, "undefined: the closed loop is not stable")) for _ in responses
+        ]
+    y, dy = ([getattr(r, name) for name in names for r in responses] for names in (("y", "u"), ("dy", "du")))
+    curves = HermiteCurves(responses[0].t, np.stack(y), np.stack(dy))
+    integrals = curves.absolute_integrals(setpoints)
+    judged = []
+    for row, (response, setpoint) in enumerate(zip(responses, setpoints, strict=True)):
+        out: Numbers = dict.fromkeys(NUMBERS)
+        why: dict[str, str] = {}
+        final = response.final_y
+        if final is None:
+            why |= dict.fromkeys(NUMBERS[:8], "undefined: the response has no final value")
+        else:
+            out["final_value"], out["offset"] = final, setpoint - final
+            shape = _shape if setpoint and abs(final) > 1e-9 else _disturbed
+            shape(curves, row, final, out, why)
+        out["IAE"], out["ISE"], out["ITAE"] = integrals[row]
+        if final is not None and abs(setpoint - final) > 1e-9:
+            for name in ("IAE", "ISE", "ITAE"):
+                why[name] = "grows with the horizon: an offset remains"
+        out["TV"] = abs(float(response.u[0])) + curves.total_variation[row + len(responses)]
+        judged.append(StepMetrics(**out, reasons=why))
+    return judged
 
 
 def step_metrics(response: Response, *, setpoint: float, stable: bool) -> StepMetrics:
@@ -143,26 +163,28 @@ def step_metrics(response: Response, *, setpoint: float, stable: bool) -> StepMe
     ----------
     .. [1] D. E. Seborg et al., Process Dynamics and Control, 3rd ed., Wiley 2011, secs. 5.4 and 12.2.
     """
-    out: dict[str, float | None] = dict.fromkeys(NUMBERS)
-    if not stable:
-        return StepMetrics(reasons=dict.fromkeys(NUMBERS, "undefined: the closed loop is not stable"))
-    why: dict[str, str] = {}
-    final = response.final_y
-    curve = HermiteCurve(response.t, response.y, response.dy)
-    if final is None:
-        why |= dict.fromkeys(NUMBERS[:8], "undefined: the response has no final value")
+    return _judge([response], [setpoint], stable)[0]
+
+
+def loop_metrics(step: ClosedLoopStep, *, stable: bool) -> tuple[StepMetrics, StepMetrics]:
+    """Judge the setpoint and the load response of a loop: step_metrics of both.
+
+    Parameters
+    ----------
+    step : ClosedLoopStep
+    stable : bool
+        Verdict of the closed loop.
+
+    Returns
+    -------
+    setpoint, load : StepMetrics
+    """
+    if step.setpoint.t.size == step.load.t.size:
+        setpoint, load = _judge([step.setpoint, step.load], [1.0, 0.0], stable)
     else:
-        out["final_value"], out["offset"] = final, setpoint - final
-        if setpoint and abs(final) > 1e-9:
-            _shape(curve, final, out, why)
-        else:
-            _disturbed(curve, final, out, why)
-    out["IAE"], out["ISE"], out["ITAE"] = curve.absolute_integrals(setpoint)
-    if final is not None and abs(setpoint - final) > 1e-9:
-        for name in ("IAE", "ISE", "ITAE"):
-            why[name] = "grows with the horizon: an offset remains"
-    out["TV"] = abs(float(response.u[0])) + HermiteCurve(response.t, response.u, response.du).total_variation()
-    return StepMetrics(**out, reasons=why)
+        setpoint = step_metrics(step.setpoint, setpoint=1.0, stable=stable)
+        load = step_metrics(step.load, setpoint=0.0, stable=stable)
+    return setpoint, load
 
 
 def default_horizon(loop: FeedbackLoop) -> float:

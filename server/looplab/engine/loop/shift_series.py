@@ -21,6 +21,8 @@ ComplexArray = npt.NDArray[np.complex128]
 Symbol = Callable[[ComplexArray], tuple[ComplexArray, ComplexArray]]
 
 TAIL = 1e-15
+# Coefficients this small, relative to the largest, are left out.
+NEGLIGIBLE = 1e-16
 STAGNATION = 1e-11
 MAX_NODES = 4096
 # Largest exp(s A(z)) on the circle: that many digits of the coefficients may be lost to cancellation.
@@ -30,19 +32,21 @@ LONGEST_PIECE = 256.0
 # A returning jump (neutral loop) shrinks by this factor per dead time on the circle chosen for it.
 NEUTRAL_DECAY = 0.983
 # 1/k! for k = 4 i + j
-_TAYLOR = np.array([[1.0 / factorial(4 * i + j) for j in range(4)] for i in range(4)])
+_TAYLOR = np.array([[1.0 / factorial(4 * i + j) for j in range(4)] for i in range(4)], dtype=complex)
 
 
 def _taylor(matrices: ComplexArray) -> ComplexArray:
     """exp of matrices of norm <= 1/2: degree 15 in powers of the fourth power (Paterson-Stockmeyer), error < 1e-18."""
-    a2 = matrices @ matrices
-    a3 = a2 @ matrices
-    a4 = a2 @ a2
-    powers = np.stack([np.broadcast_to(np.eye(matrices.shape[-1]), matrices.shape), matrices, a2, a3])
-    blocks = np.tensordot(_TAYLOR, powers, axes=1)
+    powers = np.empty((4, *matrices.shape), dtype=complex)
+    powers[0], powers[1] = np.eye(matrices.shape[-1]), matrices
+    np.matmul(matrices, matrices, out=powers[2])
+    np.matmul(powers[2], matrices, out=powers[3])
+    a4 = powers[2] @ powers[2]
+    blocks = (_TAYLOR @ powers.reshape(4, -1)).reshape(powers.shape)
     out = blocks[3]
     for block in (blocks[2], blocks[1], blocks[0]):
-        out = block + a4 @ out
+        out = a4 @ out
+        out += block
     return out
 
 
@@ -112,8 +116,8 @@ def _power(base: ComplexArray, exponent: int) -> ComplexArray:
 
 
 def shift_series(
-    symbol: Symbol, h: float, samples: int, terms: int, neutral: float = 0.0
-) -> tuple[FloatArray, FloatArray]:
+    symbol: Symbol, h: float, samples: int, terms: int, neutral: float = 0.0, largest: float = np.inf
+) -> tuple[FloatArray, FloatArray] | None:
     """Coefficients over one piece of length samples*h.
 
     Parameters
@@ -128,6 +132,8 @@ def shift_series(
         Terms that can matter at most.
     neutral : float
         Relative size of the jump that comes back after one dead time [-].
+    largest : float
+        Give up, with None, where the exponential is larger on the circle or the piece too long for it to be exact.
 
     Returns
     -------
@@ -148,20 +154,28 @@ def shift_series(
         nodes = min(MAX_NODES, max(16, 2 ** int(np.ceil(np.log2(max(wanted, 1.0) / 0.75)))))
     while nodes <= MAX_NODES:
         A, C = symbol(circle(nodes, radius))
+        length = _norm(A) * (h * samples)
+        if largest < np.inf and length > LONGEST_PIECE:
+            return None
         step = expm_batch(A * h)
+        whole = _power(step, samples)
+        if largest < np.inf and not _norm(whole) <= largest:
+            return None
         # At these points the forward transform is the series itself, so irfft returns its coefficients.
-        F = np.fft.irfft(_power(step, samples), n=nodes, axis=0)
+        F = np.fft.irfft(whole, n=nodes, axis=0)
         size = np.abs(F).max(axis=(1, 2))
         # The exponential of a stiff matrix has rounding noise of its own, in every coefficient: a small tail that no
         # longer shrinks is that noise.
-        noise = max(TAIL * 30.0, TAIL * _norm(A * (h * samples)))
+        noise = max(TAIL * 30.0, TAIL * length)
         tail, before = size[nodes * 3 // 4 :].max() / size.max(), tail
         if tail <= noise or nodes == MAX_NODES or 0.1 * before < tail < STAGNATION:
             H = np.fft.irfft(_powers_of(step, C, samples), n=nodes, axis=0)
             reach = np.abs(H).max(axis=(1, 2, 3))
             if reach[nodes * 3 // 4 :].max() <= max(10 * noise, 2 * tail) * max(reach.max(), size.max()):
                 size = np.maximum(size / size.max(), reach / max(reach.max(), 1e-300))
-                last = int(np.flatnonzero(size[:terms] > 1e-17)[-1]) + 1
+                last = int(np.flatnonzero(size[:terms] > NEGLIGIBLE)[-1]) + 1
+                if radius == 1.0:
+                    return F[:last], H[:last]
                 undo = radius ** -np.arange(last, dtype=float)
                 return F[:last] * undo[:, None, None], H[:last] * undo[:, None, None, None]
         nodes *= 2

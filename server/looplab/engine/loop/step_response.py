@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import expm, matrix_balance
+from scipy.linalg import expm
+from scipy.linalg.lapack import dgebal
 
 from looplab.engine.errors import InvalidInput
 from looplab.engine.loop.dead_time import TimeGrid, delay_grid, delayed_response
@@ -67,7 +68,7 @@ class LoopEquations:
         self.u0 = np.zeros(n)
         self.u0[p : p + c] = C.C
         self.u0[n - 2] = C.D + F
-        self.base[:p] += np.outer(P.B, self.u0)
+        self.base[:p] += P.B[:, None] * self.u0
         self.base[:p, n - 1] += P.B
         self.b_y = np.concatenate([-P.B * C.D, -C.B, [0.0, 0.0]])
         # Plant output before its dead time: g x / (1 + Dp Dc z).
@@ -81,8 +82,8 @@ class LoopEquations:
         """Scale the states so that rows and columns of A are of one size: exponentials keep their digits."""
         if not states:
             return
-        size = np.abs(self.base) + np.outer(np.abs(self.b_y), np.abs(self.g))
-        _, (scale, _) = matrix_balance(size[:states, :states], permute=False, separate=True)
+        size = np.abs(self.base) + np.abs(self.b_y)[:, None] * np.abs(self.g)
+        _, _, _, scale, _ = dgebal(size[:states, :states], scale=1, permute=0)
         self.base[:states] /= scale[:, None]
         self.base[:, :states] *= scale
         self.b_y[:states] /= scale
@@ -97,10 +98,20 @@ class LoopEquations:
         values = np.stack([y, u], axis=1)
         return A, np.concatenate([values, values @ A], axis=1)
 
+    @cached_property
+    def without_shift(self) -> tuple[FloatArray, FloatArray]:
+        """A, shape (n, n), and the rows of y, u, dy/dt, du/dt, shape (4, n), of the loop without dead time."""
+        y = self.g / (1.0 + self.DpDc)
+        u = self.u0 - self.Dc * y
+        A = self.base + self.b_y[:, None] * y
+        rows = np.empty((4, y.size))
+        rows[0], rows[1] = y, u
+        rows[2:] = rows[:2] @ A
+        return A, rows
+
     def closed_loop_matrix(self) -> FloatArray:
         """A of the autonomous loop without dead time, shape (n, n): plant and controller states only."""
-        A, _ = self.at(np.ones(1, dtype=complex))
-        return A[0, :-2, :-2].real.copy()
+        return self.without_shift[0][:-2, :-2]
 
     @property
     def starts(self) -> FloatArray:
@@ -110,7 +121,7 @@ class LoopEquations:
         return x0
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=32)
 def loop_equations(loop: FeedbackLoop) -> LoopEquations:
     """The equations of a loop, cached by content."""
     return LoopEquations(loop)
@@ -130,12 +141,15 @@ def _check(horizon: float, points: int, theta: float) -> None:
 
 
 def _cut(t: FloatArray, rows: FloatArray, final: float | None, why: str) -> Response:
+    """The response in the rows y, u, dy/dt, du/dt, shape (4, n), as far as it stays within bounds."""
     with np.errstate(invalid="ignore"):
-        bad = ~(np.abs(rows[:, :2]) < LARGEST_VALUE).all(axis=1)
-    stop = int(np.argmax(bad)) if bad.any() else t.size
-    whole = stop == t.size
-    y, u, dy, du = rows[:stop].T
-    return Response(t[:stop], y, u, dy, du, final, None if whole else float(t[stop]), None if whole else why)
+        inside = np.abs(rows[:2]) < LARGEST_VALUE
+    if inside.all():
+        y, u, dy, du = rows
+        return Response(t, y, u, dy, du, final)
+    stop = int(inside.all(axis=0).argmin())
+    y, u, dy, du = rows[:, :stop]
+    return Response(t[:stop], y, u, dy, du, final, float(t[stop]), why)
 
 
 def _final_values(loop: FeedbackLoop) -> tuple[float | None, float | None]:
@@ -198,13 +212,14 @@ def closed_loop_step(loop: FeedbackLoop, horizon: float, points: int = 500) -> C
     with np.errstate(over="ignore", invalid="ignore"):
         if theta == 0.0:
             grid = TimeGrid(horizon / (points - 1), points)
-            A, rows = equations.at(np.ones(1, dtype=complex))
-            out = delay_free_response(A[0].real, rows[0].real, equations.starts, grid.h, grid.count)
+            A, rows = equations.without_shift
+            out = delay_free_response(A, rows, equations.starts, grid.h, grid.count)
         else:
             grid, out = delayed_response(equations.at, equations.starts, theta, horizon, points, abs(equations.DpDc))
     t, why = grid.t, f"the response grows beyond {LARGEST_VALUE:g}: the loop is unstable"
     final_r, final_d = _final_values(loop)
-    return ClosedLoopStep(t, horizon, _cut(t, out[:, :, 0], final_r, why), _cut(t, out[:, :, 1], final_d, why))
+    setpoint, load = np.ascontiguousarray(out.transpose(2, 1, 0))
+    return ClosedLoopStep(t, horizon, _cut(t, setpoint, final_r, why), _cut(t, load, final_d, why))
 
 
 def step_response(system: TransferFunction, horizon: float, points: int = 500) -> Response:
@@ -242,9 +257,9 @@ def step_response(system: TransferFunction, horizon: float, points: int = 500) -
         x0 = expm(A * (shift * grid.h - system.theta)) @ x0 if grid.pieces_per_step > 1 else x0
     with np.errstate(over="ignore", invalid="ignore"):
         values = delay_free_response(A, np.stack([row, row @ A]), x0, grid.h, grid.count)[:, :, 0]
-    rows = np.zeros((grid.count, 4))
+    rows = np.zeros((4, grid.count))
     if shift < grid.count:
-        rows[shift:, [0, 2]] = values[: grid.count - shift]
-    rows[:, 1] = 1.0
+        rows[::2, shift:] = values[: grid.count - shift].T
+    rows[1] = 1.0
     final = system.dc_gain if np.isfinite(system.dc_gain) else None
     return _cut(grid.t, rows, final, f"the response grows beyond {LARGEST_VALUE:g}")

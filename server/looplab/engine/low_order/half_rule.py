@@ -53,9 +53,46 @@ def _halve(data: Lags, lags: list[float], kept: int) -> tuple[list[float], float
     rest = lags[kept:]
     theta = data.theta + sum(data.inverse) + sum(rest[1:])
     if rest:
-        main[-1] += 0.5 * rest[0]
+        # Of an integrator (nothing else kept) half a lag more is nothing.
+        if main:
+            main[-1] += 0.5 * rest[0]
         theta += 0.5 * rest[0]
     return main, theta
+
+
+def effective_lags(data: Lags, kept: int) -> Lags:
+    """What the half rule leaves of a plant: ``kept`` lags, the effective gain and dead time, no zeros.
+
+    Parameters
+    ----------
+    data : Lags
+    kept : int
+        Lags of the model; 0 where an integrator is all that is kept.
+
+    Returns
+    -------
+    Lags
+
+    Raises
+    ------
+    RuleNotApplicable
+        After the zeros are matched there are too few lags left.
+    """
+    theta = data.theta + sum(data.inverse)
+    seen: list[float] = []
+    for _ in range(_ROUNDS):
+        K, lags = _without_leads(data, theta)
+        if len(lags) < kept:
+            raise RuleNotApplicable(
+                f"after its zeros are matched the plant has {len(lags)} lags, fewer than the model", field="plant"
+            )
+        main, new = _halve(data, lags, kept)
+        # Where the rules switch back and forth, the round with the larger dead time is the careful one.
+        if abs(new - theta) <= 1e-12 * max(new, theta) or (new in seen and new >= theta):
+            break
+        seen.append(new)
+        theta = new
+    return Lags(K, tuple(main), (), (), new)
 
 
 def half_rule(plant: TransferFunction, type: ModelType) -> FOPDT | SOPDT:
@@ -88,19 +125,7 @@ def half_rule(plant: TransferFunction, type: ModelType) -> FOPDT | SOPDT:
     ----------
     .. [1] S. Skogestad, J. Process Control 13 (2003) 291-309, sec. 2.
     """
-    data, kept = time_constants(plant), 1 if type == "FOPDT" else 2
-    theta = data.theta + sum(data.inverse)
-    seen: list[float] = []
-    for _ in range(_ROUNDS):
-        K, lags = _without_leads(data, theta)
-        if len(lags) < kept:
-            raise RuleNotApplicable(
-                f"after its zeros are matched the plant has {len(lags)} lags, fewer than the model", field="plant"
-            )
-        main, new = _halve(data, lags, kept)
-        # Where the rules switch back and forth, the round with the larger dead time is the careful one.
-        if abs(new - theta) <= 1e-12 * max(new, theta) or (new in seen and new >= theta):
-            break
-        seen.append(new)
-        theta = new
-    return FOPDT(K, main[0], new) if type == "FOPDT" else second_order(K, main[0], main[1], new)
+    found = effective_lags(time_constants(plant), 1 if type == "FOPDT" else 2)
+    if type == "FOPDT":
+        return FOPDT(found.K, found.lags[0], found.theta)
+    return second_order(found.K, found.lags[0], found.lags[1], found.theta)

@@ -12,6 +12,7 @@ from looplab.engine.nonlinear.document import (
 from looplab.engine.nonlinear.language import BUILT_IN, Limits
 from looplab.engine.nonlinear.latex import LatexEquation, latex_equations
 from looplab.engine.nonlinear.model import CompiledModel, Jacobians, compile_model
+from looplab.engine.nonlinear.time_scale import slowest_time_constant
 
 __all__ = [
     "BUILT_IN",
@@ -28,4 +29,5 @@ __all__ = [
     "compile_model",
     "latex_equations",
     "read_document",
+    "slowest_time_constant",
 ]

@@ -2,12 +2,28 @@
 
 from __future__ import annotations
 
+import cmath
+from math import isfinite
+
 import numpy as np
 import numpy.typing as npt
 
-from looplab.engine.systems.transfer_function import TransferFunction
+from looplab.engine.frequency.scalar import scalar_loop
+from looplab.engine.systems.transfer_function import SMALL_ORDER, TransferFunction
 
 ComplexArray = npt.NDArray[np.complex128]
+
+# Steps this small, relative to the root, are rounding.
+SETTLED = 1e-15
+EPSILON = float(np.finfo(float).eps)
+
+
+def _log_of_factors(away: ComplexArray, zeros: int) -> ComplexArray:
+    """ln of prod(s - z)/prod(s - p) up to turns; one logarithm where the products stay in double precision."""
+    if away.shape[-1] <= SMALL_ORDER:
+        return np.log(away[..., :zeros].prod(axis=-1) / away[..., zeros:].prod(axis=-1))
+    logs = np.log(away)
+    return np.asarray(logs[..., :zeros].sum(axis=-1) - logs[..., zeros:].sum(axis=-1))
 
 
 def polish_closed_loop_poles(
@@ -32,14 +48,60 @@ def polish_closed_loop_poles(
         True where the residual \|1 + K L\| ended below 1e-8 (or what rounding of s allows) near the guess.
     """
     s = guess.astype(complex)
-    K = np.asarray(gain, dtype=float)
+    roots = np.concatenate([L.zeros, L.poles])
+    sign = np.ones(roots.size, dtype=complex)
+    sign[L.zeros.size :] = -1.0
     with np.errstate(all="ignore"):
-        for _ in range(steps):
-            step = np.log(-K * L(s)) / L.log_derivative(s)
-            s = s - np.where(np.isfinite(step), step, 0.0)
-        value = K * L(s)
+        offset = np.log(np.asarray(gain, dtype=float) * L.gain + 0j) - 1j * np.pi
+        for left in range(steps, -1, -1):
+            away = s[..., None] - roots
+            miss = _log_of_factors(away, L.zeros.size) + (offset - L.theta * s)
+            miss.imag -= 2.0 * np.pi * np.round(miss.imag / (2.0 * np.pi))
+            slope = np.reciprocal(away) @ sign - L.theta
+            if not left:
+                break
+            step = miss / slope
+            step[~np.isfinite(step)] = 0.0
+            s = s - step
+            if not (np.abs(step) > SETTLED * np.abs(s)).any():
+                break
         # Next to an open-loop pole L cannot be known better than the rounding of s allows.
-        knowable = 8.0 * np.finfo(float).eps * np.abs(s) * np.abs(L.log_derivative(s))
-        good = np.isfinite(value) & (np.abs(1.0 + value) < np.maximum(1e-8, np.minimum(knowable, 0.1)))
+        knowable = 8.0 * EPSILON * np.abs(s * slope)
+        good = np.abs(miss) < np.maximum(1e-8, np.minimum(knowable, 0.1))
         good &= np.abs(s - guess) <= 0.3 * np.abs(guess) + 1e-6
     return s, good
+
+
+def polish_few(L: TransferFunction, guess: ComplexArray, steps: int = 2) -> ComplexArray:
+    """The same for a handful of poles, on plain numbers; a pole whose Newton steps lead nowhere stays as guessed.
+
+    Parameters
+    ----------
+    L : TransferFunction
+    guess : ndarray of complex, shape (n,)
+        Closed under conjugation [rad/time].
+    steps : int
+
+    Returns
+    -------
+    ndarray of complex, shape (n,)
+    """
+    loop, gain = scalar_loop(L.unit), abs(L.gain)
+    done: dict[complex, complex] = {}
+    for start in guess.tolist():
+        if start.conjugate() in done:
+            done[start] = done[start.conjugate()].conjugate()
+            continue
+        s, miss, rate = start, 1.0 + 0j, 0j
+        for left in range(steps, -1, -1):
+            value, rate, _ = loop.value_and_rates(s, gain)
+            if not (isfinite(abs(value)) and value and rate):
+                break
+            miss = cmath.log(-value)
+            if left:
+                s -= miss / rate
+        # Next to an open-loop pole L cannot be known better than the rounding of s allows.
+        knowable = 8.0 * EPSILON * abs(s * rate)
+        good = abs(miss) < max(1e-8, min(knowable, 0.1)) and abs(s - start) <= 0.3 * abs(start) + 1e-6
+        done[start] = s if good else start
+    return np.array([done[start] for start in guess.tolist()], dtype=complex)

@@ -28,7 +28,8 @@ def _quadratic_roots(a: float, b: float, c: float) -> ComplexArray:
         im = 0.5 * np.sqrt(-disc)
         return np.array([complex(-0.5 * b, im), complex(-0.5 * b, -im)])
     q = -0.5 * (b + np.copysign(np.sqrt(disc), b))
-    return np.array([q, c / q if q != 0.0 else 0.0], dtype=complex)
+    with np.errstate(invalid="ignore"):
+        return np.array([q, c / q if q != 0.0 else 0.0], dtype=complex)
 
 
 def roots(coefficients: FloatArray) -> ComplexArray:
@@ -43,6 +44,11 @@ def roots(coefficients: FloatArray) -> ComplexArray:
     -------
     ndarray, shape (n,)
         The roots; roots at the origin are exact.
+
+    Raises
+    ------
+    InvalidInput
+        The coefficients are so far apart that their quotients leave double precision.
     """
     p = trim(np.asarray(coefficients, dtype=float))
     nonzero = np.flatnonzero(p)
@@ -59,8 +65,13 @@ def roots(coefficients: FloatArray) -> ComplexArray:
         found = _quadratic_roots(*p)
     else:
         # Scale s so that the product of the roots is 1: companions of stiff polynomials lose digits otherwise.
-        scale = abs(p[-1] / p[0]) ** (1.0 / (p.size - 1))
-        found = pair_conjugates(np.roots(p * scale ** -np.arange(p.size)) * scale)
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            monic = p / p[0]
+            scale = abs(monic[-1]) ** (1.0 / (p.size - 1))
+            scaled = monic * scale ** -np.arange(p.size)
+        if not np.isfinite(scaled).all():
+            raise InvalidInput("the coefficients are too far apart", hint="choose other units")
+        found = pair_conjugates(np.roots(scaled) * scale)
     return np.concatenate([np.zeros(origin, dtype=complex), found])
 
 
@@ -100,4 +111,7 @@ def pair_conjugates(values: npt.ArrayLike, field: str | None = None) -> ComplexA
 
 def from_roots(values: ComplexArray) -> FloatArray:
     """Monic real polynomial with the given conjugate-closed roots, highest power first."""
-    return np.atleast_1d(np.poly(values)).real.astype(float)
+    out = np.ones(1, dtype=complex)
+    for root in values:
+        out = np.convolve(out, (1.0, -root))
+    return out.real.copy()

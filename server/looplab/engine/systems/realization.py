@@ -64,7 +64,6 @@ def _second_order(poles: ComplexArray, zeros: ComplexArray) -> tuple[FloatArray,
     return a, b, np.array([1.0 / w**2, 0.0]), 0.0
 
 
-@lru_cache(maxsize=512)
 def realize(system: TransferFunction) -> StateSpace:
     """State space of the rational part (the dead time is left to the caller).
 
@@ -76,7 +75,7 @@ def realize(system: TransferFunction) -> StateSpace:
     Returns
     -------
     StateSpace
-        n = number of poles; each section's states are scaled by its natural frequency.
+        n = number of poles; each section's states are scaled by its natural frequency. The gain is in C and D alone.
 
     Raises
     ------
@@ -84,22 +83,31 @@ def realize(system: TransferFunction) -> StateSpace:
         More zeros than poles.
     """
     system.require_proper()
-    n = system.order if system.gain else 0
-    A, B, C, D = np.zeros((n, n)), np.zeros(n), np.zeros(n), system.gain
+    if not system.gain:
+        return StateSpace(np.zeros((0, 0)), np.zeros(0), np.zeros(0), 0.0)
+    unit, size = _realize_unit(system.unit), abs(system.gain)
+    C = unit.C * size
+    C.setflags(write=False)
+    return StateSpace(unit.A, unit.B, C, unit.D * size)
+
+
+@lru_cache(maxsize=128)
+def _realize_unit(system: TransferFunction) -> StateSpace:
+    n = system.order
+    A, B = np.zeros((n, n)), np.zeros(n)
     at, d_chain, c_chain = 0, 1.0, np.zeros(n)
     for poles, zeros in _sections(system) if n else ():
         a, b, c, d = _first_order(poles[0].real, zeros) if poles.size == 1 else _second_order(poles, zeros)
         stop = at + poles.size
         # Input of this section: output of the chain so far, c_chain x + d_chain u.
-        A[at:stop, :] += np.outer(b, c_chain)
+        A[at:stop, :] += b[:, None] * c_chain
         A[at:stop, at:stop] += a
         B[at:stop] = b * d_chain
         c_chain = d * c_chain
         c_chain[at:stop] += c
         d_chain = d * d_chain
         at = stop
-    if n:
-        C, D = system.gain * c_chain, system.gain * d_chain
+    C = system.gain * c_chain
     for array in (A, B, C):
         array.setflags(write=False)
-    return StateSpace(A, B, C, float(D))
+    return StateSpace(A, B, C, float(system.gain * d_chain))

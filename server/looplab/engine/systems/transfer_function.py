@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, lru_cache
 from math import isfinite
+from struct import pack
 from typing import overload
 
 import numpy as np
@@ -133,8 +134,11 @@ class TransferFunction:
     @cached_property
     def key(self) -> bytes:
         """Content of the system; equal systems have equal keys."""
-        head = np.array([self.gain, self.theta, self.zeros.size]) + 0.0
-        return head.tobytes() + (self.zeros + 0.0).tobytes() + (self.poles + 0.0).tobytes()
+        return pack("3d", self.gain + 0.0, self.theta + 0.0, self.zeros.size) + self.unit._roots_key
+
+    @cached_property
+    def _roots_key(self) -> bytes:
+        return (self.zeros + 0.0).tobytes() + (self.poles + 0.0).tobytes()
 
     def __hash__(self) -> int:
         return hash(self.key)
@@ -180,18 +184,24 @@ class TransferFunction:
             return self.gain
         return 0.0 if self.is_proper else float(np.copysign(np.inf, self.gain))
 
-    @cached_property
+    @property
     def origin_order(self) -> int:
         """Poles minus zeros at s = 0: the number of integrators (negative: differentiators)."""
-        return int(np.count_nonzero(self.poles == 0) - np.count_nonzero(self.zeros == 0))
+        return self.unit._origin[0]
 
-    @cached_property
+    @property
     def origin_gain(self) -> float:
         """Limit of s^m G(s) for s to 0 with m the number of integrators."""
+        return self.gain * self.unit._origin[1]
+
+    @cached_property
+    def _origin(self) -> tuple[int, float]:
+        """The number of integrators m, and the limit of s^m G(s) per gain."""
         z, p = self.zeros[self.zeros != 0], self.poles[self.poles != 0]
         log_magnitude = np.log(np.abs(z)).sum() - np.log(np.abs(p)).sum()
         negatives = np.count_nonzero((z.imag == 0) & (z.real > 0)) + np.count_nonzero((p.imag == 0) & (p.real > 0))
-        return float(self.gain * (-1.0) ** negatives * np.exp(log_magnitude))
+        order = (self.poles.size - p.size) - (self.zeros.size - z.size)
+        return int(order), float((-1.0) ** negatives * np.exp(log_magnitude))
 
     @property
     def dc_gain(self) -> float:
@@ -250,28 +260,33 @@ class TransferFunction:
 
     def __mul__(self, other: TransferFunction | float) -> TransferFunction:
         """Series connection: roots joined, gains multiplied, dead times added; nothing is cancelled."""
-        if isinstance(other, TransferFunction):
-            if self.order + other.order <= MAX_ORDER and np.isfinite(self.gain * other.gain):
-                return TransferFunction._of(
-                    np.concatenate([self.zeros, other.zeros]),
-                    np.concatenate([self.poles, other.poles]),
-                    self.gain * other.gain,
-                    self.theta + other.theta,
-                )
-            return TransferFunction(
-                np.concatenate([self.zeros, other.zeros]),
-                np.concatenate([self.poles, other.poles]),
-                self.gain * other.gain,
-                self.theta + other.theta,
-            )
-        return TransferFunction(self.zeros, self.poles, self.gain * float(other), self.theta)
+        if not isinstance(other, TransferFunction):
+            return TransferFunction(self.zeros, self.poles, self.gain * float(other), self.theta)
+        gain = self.gain * other.gain
+        if self.order + other.order <= MAX_ORDER and isfinite(gain):
+            return _series(self.unit, other.unit).with_gain(gain)
+        return TransferFunction(
+            np.concatenate([self.zeros, other.zeros]),
+            np.concatenate([self.poles, other.poles]),
+            gain,
+            self.theta + other.theta,
+        )
 
     __rmul__ = __mul__
 
     @cached_property
     def unit(self) -> TransferFunction:
         """The same roots and dead time with gain +1 or -1: what a moved gain leaves as it is."""
+        if abs(self.gain) == 1.0:
+            return self
         return TransferFunction._of(self.zeros, self.poles, -1.0 if self.gain < 0 else 1.0, self.theta)
+
+    def with_gain(self, gain: float) -> TransferFunction:
+        """The same roots and dead time with another finite gain k; both share one ``unit`` if the signs agree."""
+        out = TransferFunction._of(self.zeros, self.poles, gain, self.theta)
+        if (gain < 0) == (self.gain < 0) and abs(gain) != 1.0:
+            out.__dict__["unit"] = self.unit
+        return out
 
     def without_dead_time(self) -> TransferFunction:
         """The rational part."""
@@ -299,3 +314,14 @@ class TransferFunction:
         from looplab.engine.systems.notation import to_latex
 
         return to_latex(self, digits)
+
+
+@lru_cache(maxsize=128)
+def _series(first: TransferFunction, second: TransferFunction) -> TransferFunction:
+    """Two systems one after the other; for every gain of either the roots are the same arrays."""
+    return TransferFunction._of(
+        np.concatenate([first.zeros, second.zeros]),
+        np.concatenate([first.poles, second.poles]),
+        first.gain * second.gain,
+        first.theta + second.theta,
+    )

@@ -1,50 +1,44 @@
-"""The list of tuning rules: what each is called, what it needs to know of the plant, and how to apply it."""
+"""The list of tuning rules, in the order in which they are shown."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
-from looplab.engine.systems.first_second_order import FOPDT
-from looplab.engine.tuning import cohen_coon_rule as _cc
-from looplab.engine.tuning import ziegler_nichols as _zn
-from looplab.engine.tuning.settings import Settings
-from looplab.engine.tuning.ultimate_point import UltimatePoint
+from looplab.engine.tuning import (
+    amigo,
+    astrom_hagglund_relay,
+    chien_hrones_reswick,
+    cohen_coon_rule,
+    error_integrals,
+    imc,
+    lambda_tuning,
+    shinskey,
+    simc,
+    tyreus_luyben,
+    ziegler_nichols,
+    ziegler_nichols_reaction,
+)
+from looplab.engine.tuning.settings import Rule
 
+RuleName = Literal[
+    "ziegler_nichols", "tyreus_luyben", "astrom_hagglund_relay",
+    "ziegler_nichols_reaction", "cohen_coon", "chr_setpoint_0", "chr_setpoint_20", "chr_load_0", "chr_load_20", "amigo",
+    "imc", "lambda_tuning", "simc",
+    "iae_load", "ise_load", "itae_load", "iae_setpoint", "itae_setpoint", "shinskey",
+]  # fmt: skip
 
-@dataclass(frozen=True)
-class Rule:
-    """A tuning rule.
-
-    Attributes
-    ----------
-    name, source : str
-        Full name and publication.
-    needs : {"ultimate", "model"}
-        Whether it starts from the ultimate point or from a FOPDT model.
-    formulas : dict
-        LaTeX of the settings by controller type.
-    apply : callable
-        (UltimatePoint or FOPDT, type) -> Settings; raises RuleNotApplicable outside its range.
-    """
-
-    name: str
-    source: str
-    needs: Literal["ultimate", "model"]
-    formulas: dict[str, str]
-    apply: Callable[[Any, str], Settings]
-
-
-def _ultimate_cycle(point: UltimatePoint, type: str) -> Settings:
-    return _zn.ziegler_nichols_ultimate(point.Ku, point.Pu, type)
-
-
-def _reaction_curve(model: FOPDT, type: str) -> Settings:
-    return _cc.cohen_coon(model, type)
-
-
-RULES: dict[str, Rule] = {
-    _zn.RULE: Rule(_zn.NAME, _zn.SOURCE, "ultimate", _zn.FORMULAS, _ultimate_cycle),
-    _cc.RULE: Rule(_cc.NAME, _cc.SOURCE, "model", _cc.FORMULAS, _reaction_curve),
-}
+_ORDER: tuple[Rule, ...] = (
+    ziegler_nichols.RULE,
+    tyreus_luyben.RULE,
+    astrom_hagglund_relay.RULE,
+    ziegler_nichols_reaction.RULE,
+    cohen_coon_rule.RULE,
+    *chien_hrones_reswick.RULES,
+    amigo.RULE,
+    imc.RULE,
+    lambda_tuning.RULE,
+    simc.RULE,
+    *error_integrals.RULES,
+    shinskey.RULE,
+)
+RULES: dict[str, Rule] = {rule.id: rule for rule in _ORDER}

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from looplab.engine.errors import RuleNotApplicable
+from looplab.engine.errors import InvalidInput, RuleNotApplicable
 from looplab.engine.frequency.crossings import crossings
 from looplab.engine.frequency.nyquist import nyquist_count
 from looplab.engine.systems.transfer_function import TransferFunction
@@ -19,6 +19,71 @@ class UltimatePoint:
     Ku: float
     Pu: float
     omega_180: float
+
+    @classmethod
+    def of(cls, Ku: float, Pu: float) -> UltimatePoint:
+        """The point that an experiment gave.
+
+        Raises
+        ------
+        InvalidInput
+            Ku is zero or Pu not positive.
+        """
+        if Ku == 0 or not np.isfinite(Ku):
+            raise InvalidInput("Ku must be a finite number other than zero", field="Ku")
+        if not (Pu > 0 and np.isfinite(Pu)):
+            raise InvalidInput("Pu must be positive", field="Pu")
+        return cls(Ku, Pu, float(2 * np.pi / Pu))
+
+
+def relay_point(amplitude: float, swing: float, Pu: float, hysteresis: float = 0.0) -> UltimatePoint:
+    r"""Ultimate point from a relay experiment, by the relay's describing function.
+
+    .. math:: K_u \approx \frac{4 d}{\pi\sqrt{a^2 - \varepsilon^2}}
+
+    Parameters
+    ----------
+    amplitude : float
+        d: the relay switches u between -d and +d around its mean, > 0 [input].
+    swing : float
+        a: y then oscillates between -a and +a around its mean, > hysteresis [output].
+    Pu : float
+        Period of that oscillation, > 0 [time].
+    hysteresis : float
+        epsilon: half the width of the relay's dead band, >= 0 [output].
+
+    Returns
+    -------
+    UltimatePoint
+        Approximate: the oscillation is taken for a sine.
+
+    Raises
+    ------
+    InvalidInput
+        A value is outside its range.
+
+    References
+    ----------
+    .. [1] K. J. Åström, T. Hägglund, Automatica 20 (1984) 645-651.
+    """
+    if not (np.isfinite(amplitude) and amplitude > 0):
+        raise InvalidInput("the relay's amplitude must be positive", field="amplitude")
+    if not (np.isfinite(hysteresis) and hysteresis >= 0):
+        raise InvalidInput("the hysteresis must be zero or positive", field="hysteresis")
+    if not (np.isfinite(swing) and swing > hysteresis):
+        raise InvalidInput("the oscillation must be larger than the hysteresis", field="swing")
+    height = np.sqrt(swing - hysteresis) * np.sqrt(swing + hysteresis)
+    return UltimatePoint.of(float(4.0 * amplitude / (np.pi * height)), Pu)
+
+
+def stabilising_sign(plant: TransferFunction) -> float:
+    """Sign that a gain must have to stabilise a plant, 1.0 or -1.0.
+
+    The constant coefficient of the closed loop's polynomial (with integral action) must have the sign of its leading
+    one: each real pole in the right half-plane turns the sign of the plant's gain at low frequency.
+    """
+    right = np.count_nonzero((plant.poles.real > 0) & (plant.poles.imag == 0))
+    return float(np.copysign(1.0, plant.origin_gain) * (-1.0) ** right)
 
 
 def ultimate_point(plant: TransferFunction) -> UltimatePoint:
@@ -45,7 +110,7 @@ def ultimate_point(plant: TransferFunction) -> UltimatePoint:
     ----------
     .. [1] J. G. Ziegler, N. B. Nichols, Trans. ASME 64 (1942) 759-768.
     """
-    sign = -1.0 if plant.origin_gain < 0 and nyquist_count(plant * 1e-9).Z == 0 else 1.0
+    sign = stabilising_sign(plant)
     P = plant * sign
     found = crossings(P)
     usable = np.isfinite(found.phase_log_magnitude) & (found.phase_omega > 0)

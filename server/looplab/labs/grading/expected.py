@@ -3,10 +3,10 @@
 from looplab.engine.errors import EngineError, RuleNotApplicable
 from looplab.engine.loop import FeedbackLoop
 from looplab.engine.systems import TransferFunction
-from looplab.engine.tuning import cohen_coon, ultimate_point, ziegler_nichols_ultimate
+from looplab.engine.tuning import RULES, KnownPlant, ultimate_point
 from looplab.labs.measures import LoopMeasures
 from looplab.labs.schema import Bench, Expected, FromEngine, FromRule, Stated
-from looplab.schemas import FOPDTSystem, System
+from looplab.schemas import System
 
 UNIT_GAIN = TransferFunction()
 
@@ -38,13 +38,7 @@ def _measured(expected: FromEngine, plant: TransferFunction) -> float:
 
 
 def _by_rule(expected: FromRule, plant: System) -> float:
-    if expected.rule == "ziegler_nichols":
-        point = ultimate_point(plant.to_engine())
-        settings = ziegler_nichols_ultimate(point.Ku, point.Pu, expected.type)
-    elif isinstance(plant, FOPDTSystem):
-        settings = cohen_coon(plant.to_model(), expected.type)
-    else:
-        raise RuleNotApplicable("Cohen-Coon needs a plant of the type fopdt", field="plant")
+    settings = KnownPlant.of(plant.to_engine()).tune(RULES[expected.rule], expected.type)
     value: float | None = getattr(settings, expected.setting)
     if value is None:
         raise RuleNotApplicable(f"{expected.rule} gives a {expected.type} controller no {expected.setting}")

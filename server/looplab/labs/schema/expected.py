@@ -4,6 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag
 
+from looplab.engine.tuning import RuleName, TypeName
 from looplab.labs.schema.base import Line, Model, Number
 from looplab.schemas import Controller, System
 
@@ -30,8 +31,8 @@ class FromEngine(Model):
 class FromRule(Model):
     """One setting that a tuning rule gives for a plant."""
 
-    rule: Literal["ziegler_nichols", "cohen_coon"]
-    type: Literal["P", "PI", "PID"]
+    rule: RuleName
+    type: TypeName
     setting: Literal["Kc", "tau_I", "tau_D"]
     plant: System | None = Field(default=None, description="The bench's plant where left out.")
     times: Number = 1.0

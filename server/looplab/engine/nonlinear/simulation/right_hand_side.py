@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from typing import Protocol
 
 import numpy as np
 
 from looplab.engine.errors import EngineError, NonFinite
-from looplab.engine.nonlinear.inputs import InputCourse
 from looplab.engine.nonlinear.language import Values
 from looplab.engine.nonlinear.model import CompiledModel
 from looplab.engine.nonlinear.simulation.solvers import Counter
@@ -17,6 +17,13 @@ from looplab.engine.systems.polynomial import FloatArray
 
 # The sum of squares is quicker to look at than the largest state.
 _TOO_LARGE = 4.0 * LARGEST_STATE**2
+
+
+class Course(Protocol):
+    """What an input does over time, as a solver needs it: piece by piece."""
+
+    def piece(self, start: float) -> float | Callable[[float], float]:
+        """u from ``start`` to where it begins anew: a number where it is constant, else a function of t."""
 
 
 class RunsAway(EngineError):
@@ -29,13 +36,13 @@ class RightHandSide:
     Parameters
     ----------
     model : CompiledModel
-    courses : sequence of InputCourse
+    courses : sequence of Course
         One for each input.
     p : tuple of float
     counter : Counter
     """
 
-    def __init__(self, model: CompiledModel, courses: Sequence[InputCourse], p: Values, counter: Counter) -> None:
+    def __init__(self, model: CompiledModel, courses: Sequence[Course], p: Values, counter: Counter) -> None:
         self._f, self._jacobian = model.f, model.state_jacobian
         self._courses, self._p, self._counter = courses, p, counter
         self._last = np.zeros((len(model.state_names),) * 2)

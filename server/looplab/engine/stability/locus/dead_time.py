@@ -12,6 +12,7 @@ from looplab.engine.stability.locus.construction import Breakaway
 from looplab.engine.stability.locus.count import count_in_rectangle
 from looplab.engine.stability.locus.meeting import meet
 from looplab.engine.stability.locus.near_roots import poles_near_roots
+from looplab.engine.stability.locus.pairs import nearest_pairs
 from looplab.engine.stability.polish import polish_closed_loop_poles
 from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.realization import realize
@@ -86,21 +87,6 @@ def _distinct(poles: ComplexArray) -> ComplexArray:
     return np.array(kept, dtype=complex)
 
 
-def _match(guess: ComplexArray, points: ComplexArray, gate: float) -> list[tuple[int, int]]:
-    """Pairs (guess, point), nearest first, each used once."""
-    if not guess.size or not points.size:
-        return []
-    gap = np.abs(guess[:, None] - points[None, :])
-    pairs: list[tuple[int, int]] = []
-    for flat in np.argsort(gap, axis=None):
-        i, j = divmod(int(flat), points.size)
-        if gap[i, j] > gate:
-            break
-        if all(i != a and j != b for a, b in pairs):
-            pairs.append((i, j))
-    return pairs
-
-
 def _join(L: TransferFunction, gains: FloatArray, rows: list[ComplexArray], gate: float) -> ComplexArray:
     """Branches as rows of an array with NaN where a branch is outside, shape (branches, gains)."""
     columns: list[ComplexArray] = []
@@ -112,7 +98,7 @@ def _join(L: TransferFunction, gains: FloatArray, rows: list[ComplexArray], gate
                 slope = -np.log(gains[i] / gains[i - 1]) / L.log_derivative(guess)
             small = np.abs(slope) < gate
             guess = guess + np.where(small, slope, 0.0)
-        pairs = _match(guess, row, gate)
+        pairs = nearest_pairs(guess, row, gate)
         now: list[int] = []
         for a, j in pairs:
             columns[alive[a]][i] = row[j]

@@ -8,6 +8,7 @@ import numpy.typing as npt
 from looplab.engine.stability.locus.construction import Breakaway
 from looplab.engine.stability.locus.meeting import meet
 from looplab.engine.stability.locus.near_roots import poles_near_roots
+from looplab.engine.stability.locus.pairs import nearest_pairs
 from looplab.engine.stability.polish import polish_closed_loop_poles
 from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.realization import realize
@@ -17,14 +18,19 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 MAX_GAINS = 700
+# Of a branch in the picture: the longest step, relative to its size, and the largest turn [rad] between gains.
+LONGEST_STEP = 0.04
+LARGEST_TURN = 0.15
+# Into so many parts an interval is cut at once.
+MOST_PARTS = 8
 
 
 def _poles_at(L: TransferFunction, gains: FloatArray, breaks: tuple[Breakaway, ...]) -> ComplexArray:
     """Closed-loop poles for each gain, unsorted, shape (m, n)."""
     ss = realize(L)
     effective = gains / (1.0 + gains * ss.D)
-    found = np.linalg.eigvals(ss.A - effective[:, None, None] * np.outer(ss.B, ss.C)).astype(complex)
-    polished, good = polish_closed_loop_poles(L, found, gains[:, None], steps=3)
+    found = np.linalg.eigvals(ss.A - effective[:, None, None] * (ss.B[:, None] * ss.C)).astype(complex)
+    polished, good = polish_closed_loop_poles(L, found, gains[:, None], steps=2)
     # Near a break-away Newton may pull two roots into one: keep the eigenvalues there.
     good &= np.abs(polished - found) < 0.2 * _nearest_neighbour(found)
     out = np.where(good, polished, found)
@@ -60,27 +66,47 @@ def _nearest_neighbour(points: ComplexArray) -> FloatArray:
     return gap.min(axis=-1)
 
 
-def _join(L: TransferFunction, gains: FloatArray, poles: ComplexArray) -> ComplexArray:
-    """Order each row so that columns are continuous branches: nearest to the predicted pole, assigned where unclear."""
-    out = poles.copy()
-    for i in range(1, len(gains)):
-        guess = out[i - 1]
-        if i > 1 and gains[i - 1] > gains[i - 2]:
-            guess = guess + (out[i - 1] - out[i - 2]) * _ratio(gains[i - 2 : i + 1])
-        gap = np.abs(guess[:, None] - out[i][None, :])
-        nearest = gap.argmin(axis=1)
-        if np.unique(nearest).size != nearest.size:
-            from scipy.optimize import linear_sum_assignment
+def _links(L: TransferFunction, gains: FloatArray, poles: ComplexArray) -> npt.NDArray[np.intp]:
+    """Which pole of the next gain each pole becomes, shape (m-1, n).
 
-            nearest = linear_sum_assignment(np.abs(out[i - 1][:, None] - out[i][None, :]) ** 2)[1]
-        out[i] = out[i][nearest]
-    return out.T
+    Each is followed along its tangent ds/dK = -L/(K L') to the nearest pole there; of two that want the same one the
+    nearer gets it.
+    """
+    with np.errstate(all="ignore"):
+        ahead = -np.log(gains[1:] / gains[:-1])[:, None] / L.log_derivative(poles[:-1])
+    # At a meeting point the tangent is lost; next to one it points too far.
+    ahead[~(np.abs(ahead) < 0.5 * _nearest_neighbour(poles[:-1]))] = 0.0
+    gap = np.abs((poles[:-1] + ahead)[:, :, None] - poles[1:, None, :])
+    nearest = gap.argmin(axis=2)
+    for i in np.flatnonzero((np.sort(nearest, axis=1) != np.arange(poles.shape[1])).any(axis=1)).tolist():
+        for a, b in nearest_pairs(poles[i] + ahead[i], poles[i + 1]):
+            nearest[i, a] = b
+    return nearest
 
 
-def _ratio(g: FloatArray) -> float:
-    if g[0] <= 0:
-        return 0.0
-    return float(min(np.log(g[2] / g[1]) / np.log(g[1] / g[0]), 2.0))
+def _joined(poles: ComplexArray, links: npt.NDArray[np.intp]) -> ComplexArray:
+    """Branches as rows, shape (n, m)."""
+    order = [list(range(poles.shape[1]))]
+    for step in links.tolist():
+        order.append([step[j] for j in order[-1]])
+    return np.take_along_axis(poles, np.array(order).reshape(poles.shape), axis=1).T
+
+
+def _needed_parts(poles: ComplexArray, links: npt.NDArray[np.intp], size: float) -> npt.NDArray[np.intp]:
+    """Into how many parts each interval of the gain must be cut for the branches to look smooth, shape (m-1,)."""
+    step = np.take_along_axis(poles[1:], links, axis=1) - poles[:-1]
+    length, near = np.abs(step), np.abs(poles) < 3.0 * size
+    inside = near[:-1] | np.take_along_axis(near[1:], links, axis=1)
+    parts = np.where(inside, length, 0.0).max(axis=1, initial=0.0) / (LONGEST_STEP * size)
+    with np.errstate(all="ignore"):
+        turn = np.abs(np.angle(np.take_along_axis(step[1:], links[:-1], axis=1) / step[:-1]))
+    # A right-angled break-away is a true corner; elsewhere a turn wants more points.
+    after = np.take_along_axis(length[1:], links[:-1], axis=1)
+    seen = (np.minimum(after, length[:-1]) > 0.004 * size) & inside[:-1]
+    bend = np.where(seen, turn, 0.0).max(axis=1, initial=0.0) / LARGEST_TURN
+    np.maximum(parts[:-1], bend, out=parts[:-1])
+    np.maximum(parts[1:], bend, out=parts[1:])
+    return np.clip(np.ceil(parts), 1, MOST_PARTS).astype(np.intp)
 
 
 def rational_branches(
@@ -88,27 +114,19 @@ def rational_branches(
 ) -> tuple[FloatArray, ComplexArray]:
     """Add gains where a branch jumps or turns, until it looks smooth in a window of the given size."""
     poles = _poles_at(L, gains, breaks)
-    coarse: npt.NDArray[np.bool_]
     for _ in range(5):
-        branches = _join(L, gains, poles)
-        step = np.abs(np.diff(branches, axis=1))
-        inside = np.minimum(np.abs(branches[:, 1:]), np.abs(branches[:, :-1])) < 3.0 * size
-        coarse = np.asarray(((step > 0.04 * size) & inside).any(axis=0))
-        middle = branches[:, 1:-1]
-        a, b = middle - branches[:, :-2], branches[:, 2:] - middle
-        with np.errstate(all="ignore"):
-            turn = np.abs(np.angle(b / a))
-        # A right-angled break-away is a true corner; elsewhere a turn wants more points.
-        bend = (turn > 0.15) & (np.minimum(np.abs(a), np.abs(b)) > 0.004 * size) & inside[:, 1:]
-        coarse[:-1] |= bend.any(axis=0)
-        coarse[1:] |= bend.any(axis=0)
-        if not coarse.any() or gains.size > MAX_GAINS:
-            break
-        low, high = gains[:-1][coarse], gains[1:][coarse]
-        extra = np.where(low > 0, np.sqrt(low * high), high / 4.0)
-        new = _poles_at(L, extra, ())
-        gains = np.concatenate([gains, extra])
-        poles = np.concatenate([poles, new])
+        links = _links(L, gains, poles)
+        parts = _needed_parts(poles, links, size)
+        cut = np.flatnonzero(parts > 1)
+        if not cut.size or gains.size > MAX_GAINS:
+            return gains, _joined(poles, links)
+        count = parts[cut] - 1
+        left = np.repeat(cut, count)
+        part = (1 + np.arange(left.size) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(parts[cut], count)
+        low, high = gains[left], gains[left + 1]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            extra = np.where(low > 0, low * (high / low) ** part, high * part**2)
+        gains, poles = np.concatenate([gains, extra]), np.concatenate([poles, _poles_at(L, extra, ())])
         order = np.argsort(gains, kind="stable")
         gains, poles = gains[order], poles[order]
-    return gains, _join(L, gains, poles)
+    return gains, _joined(poles, _links(L, gains, poles))

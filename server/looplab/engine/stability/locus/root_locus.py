@@ -31,6 +31,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 START_GAINS = 90
+RATIONAL_START_GAINS = 48
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ class RootLocus:
     complete: bool
 
 
-@lru_cache(maxsize=128)
+@lru_cache(maxsize=16)
 def root_locus(L: TransferFunction) -> RootLocus:
     r"""Closed-loop poles for a gain K from 0 upwards; give -L for negative gains.
 
@@ -124,7 +125,7 @@ def _rational_gains(L: TransferFunction, marks: list[float], size: float) -> Flo
     leave = (1.5 * size) ** excess / abs(L.gain) if L.relative_degree else 10.0 / abs(L.gain)
     low = min([*marks, leave]) * 1e-3
     high = max([10.0 * m for m in marks] + [100.0 * leave])
-    return np.unique(np.concatenate([[0.0], np.geomspace(low, high, START_GAINS), marks]))
+    return np.unique(np.concatenate([[0.0], np.geomspace(low, high, RATIONAL_START_GAINS), marks]))
 
 
 def _delay_gains(L: TransferFunction, marks: list[float], inside: Rectangle) -> FloatArray:

@@ -1,0 +1,89 @@
+/** One plant: its drawing, moved by a run that goes on, its curves, and what can be worked out about it. */
+
+import { createApi } from "../core/api.js";
+import { createPlantBench } from "../core/plant-bench.js";
+import { paceOf, round125 } from "../core/plant-pace.js";
+import { createPlantRun } from "../core/plant-run.js";
+import { h } from "../components/dom.js";
+import "../components/site-header.js";
+import * as experiment from "../panels/plant-experiment.js";
+import * as facts from "../panels/plant-facts.js";
+import * as inputs from "../panels/plant-inputs.js";
+import * as picture from "../panels/plant-picture.js";
+import * as plot from "../panels/plant-plot.js";
+
+/** Seconds in which the curves of an experiment are played. */
+const PLAYED_IN = 10;
+const LONGEST_TICK = 0.1;
+
+/** @param {string} id @param {HTMLElement} main */
+async function open(id, main) {
+  const api = createApi();
+  let answer;
+  try {
+    answer = await api.plant(id);
+  } catch (error) {
+    const { message, hint } = /** @type {any} */ (error);
+    main.replaceChildren(h("h1", {}, "No such plant"), h("p", { class: "empty" }, `${message}${hint ? `: ${hint}` : ""}. `, h("a", { href: "/plants" }, "See all plants")));
+    return;
+  }
+  const bench = createPlantBench(answer, location.search);
+  const pace = paceOf(answer.time_scale, bench.timeUnit);
+  const { document: model } = bench;
+  document.title = `${model.title} · looplab`;
+  const head = h("header", { class: "plant-head" }, h("p", { class: "plant-group" }, h("a", { href: "/plants" }, "Plants"), ` › ${answer.group}`), h("h1", {}, model.title), h("p", {}, model.summary ?? ""), model.notes ? h("p", { class: "facts" }, `Lecture notes §${model.notes}`) : null);
+  const [rail, middle, right, below] = [h("div", { class: "plant-rail" }), h("div", { class: "plant-middle" }), h("div", { class: "plant-right" }), h("div", { class: "plant-below" })];
+  main.replaceChildren(head, h("div", { class: "plant-bench" }, middle, right, rail), below);
+
+  /** @type {() => void} */
+  let refresh = () => {};
+  const run = createPlantRun(bench, { simulate: (request) => api.workOut(id, "simulate", request), speed: pace.speed, onChange: () => refresh() });
+  const pictured = picture.mount(middle, bench, run, pace);
+  const plotted = plot.mount(right, bench, run, { window: () => round125(12 * run.speed) });
+  const knobs = inputs.mount(rail, bench);
+  experiment.mount(rail, bench, run, api, { window: round125(5 * (answer.time_scale ?? 1)) });
+  const told = facts.mount(below, bench);
+
+  let frame = 0;
+  let before = 0;
+  let whole = false;
+  /** @param {number} now */
+  function show(now) {
+    frame = 0;
+    run.tick(Math.min(LONGEST_TICK, Math.max(0, (now - before) / 1000)), run.whole ? (run.end - run.start) / PLAYED_IN : run.speed);
+    before = now;
+    pictured.frame();
+    plotted.frame(now);
+    if (run.playing) frame ||= requestAnimationFrame(show);
+  }
+  refresh = () => {
+    pictured.refresh();
+    plotted.refresh({ anew: run.whole !== whole });
+    whole = run.whole;
+    if (frame === 0) {
+      before = performance.now();
+      frame = requestAnimationFrame(show);
+    }
+  };
+  let writing = 0;
+  bench.subscribe(({ moving, restart }) => {
+    if (restart) {
+      const going = run.playing;
+      run.reset();
+      if (going) run.play();
+    } else run.changed();
+    knobs.refresh();
+    told.refresh();
+    if (moving) return;
+    clearTimeout(writing);
+    writing = window.setTimeout(() => {
+      const query = bench.query();
+      history.replaceState(null, "", query ? `?${query}` : location.pathname);
+    }, 200);
+  });
+  main.addEventListener("panel-expand", (event) => /** @type {HTMLElement} */ (event.target).classList.toggle("enlarged"));
+  run.reset();
+}
+
+const main = document.getElementById("main");
+if (main) void open(decodeURIComponent(location.pathname.split("/").at(-1) ?? ""), main);

@@ -1,0 +1,4 @@
+/** The plant library. */
+
+import "../components/plants-gallery.js";
+import "../components/site-header.js";
