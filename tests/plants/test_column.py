@@ -67,7 +67,9 @@ def test_what_goes_in_comes_out_of_a_run():
     for name, rate in (("all", "F - D - B"), ("light", "F*z - D*x_D - B*x_B")):
         document["states"].append({"name": name, "initial": 0, "equation": rate})
     model = compile_model(document, BUILT_IN)
-    u = {name: InputCourse(NOMINAL[name]).plus(step(size, 2.0)) for name, size in (("V", 15.0), ("F", 10.0), ("z", -0.1))}
+    u = {
+        name: InputCourse(NOMINAL[name]).plus(step(size, 2.0)) for name, size in (("V", 15.0), ("F", 10.0), ("z", -0.1))
+    }
     run = simulate_open_loop(model, np.linspace(0, 30, 61), u, rtol=1e-12, atol=1e-13)
     M, X = run.x[:, :22], run.x[:, 22:44]
     assert run.truncated_at is None and np.abs(run.x[-1, 44:]).min() > 1
@@ -142,7 +144,9 @@ def test_too_much_reflux_dries_the_drum():
     assert run.truncated_at == pytest.approx(math.log(71.99 / 21.99) + 49 / 21.99, abs=1e-6)
 
 
-@pytest.mark.parametrize(("N", "feed_tray", "field"), [(0, 1, "N"), (59, 10, "N"), (20, 0, "feed_tray"), (5, 6, "feed_tray")])
+@pytest.mark.parametrize(
+    ("N", "feed_tray", "field"), [(0, 1, "N"), (59, 10, "N"), (20, 0, "feed_tray"), (5, 6, "feed_tray")]
+)
 def test_a_column_has_trays_and_one_of_them_is_fed(N, feed_tray, field):
     with pytest.raises(InvalidInput) as refused:
         distillation(N, feed_tray)

@@ -34,4 +34,3 @@ def balances(M, X, u: Mapping[str, Any], p: Mapping[str, Any], feed_tray: int = 
     dM[feed_tray] += u["F"]
     amounts[feed_tray] += u["F"] * u["z"]
     return dM, amounts
-

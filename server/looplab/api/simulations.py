@@ -124,6 +124,20 @@ def open_loop_settings(request: SimulationRequest, model: ModelParts) -> OpenLoo
     )
 
 
+def matrix_settings(request: SimulationRequest, matrix: ModelParts) -> OpenLoopSettings:
+    """The request for a transfer matrix, which has inputs and nothing else to set.
+
+    Raises
+    ------
+    InvalidInput
+        Something else is set.
+    """
+    for name, given in (("parameters", request.parameters), ("initial", request.initial), ("start", request.start)):
+        if given:
+            raise InvalidInput("a transfer matrix starts at rest at t = 0 and has no parameters", field=name)
+    return open_loop_settings(request, matrix)
+
+
 def control_loops(request: ControlRequest) -> list[ControlLoop]:
     """The loops of a request as a worker takes them; raises EngineError naming the field."""
     out = []

@@ -231,7 +231,13 @@ def distillation(N: int = 20, feed_tray: int = 10) -> dict[str, Any]:
         "variables": _variables(N, feed_tray),
         "states": _states(N, feed_tray),
         "outputs": [
-            {"name": "x_D", "expression": "x_D", "unit": "-", "meaning": "composition of the distillate", "latex": "x_D"},
+            {
+                "name": "x_D",
+                "expression": "x_D",
+                "unit": "-",
+                "meaning": "composition of the distillate",
+                "latex": "x_D",
+            },
             {"name": "x_B", "expression": "x_B", "unit": "-", "meaning": "composition of the bottoms", "latex": "x_B"},
             {"name": "D", "expression": "D", "unit": "mol/min", "meaning": "distillate", "latex": "D"},
             {"name": "B", "expression": "B", "unit": "mol/min", "meaning": "bottoms", "latex": "B"},
