@@ -22,7 +22,8 @@ PRINTED = [
 
 
 def named(model, u=None, p=None):
-    return (dict(zip(model.input_names, u or model.u0, strict=True)), dict(zip(model.parameter_names, p or model.p0)))
+    pairs = (model.input_names, u or model.u0), (model.parameter_names, p or model.p0)
+    return [dict(zip(names, values, strict=True)) for names, values in pairs]
 
 
 def at_rest(model, u, p, near):

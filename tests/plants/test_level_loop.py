@@ -61,7 +61,7 @@ def test_a_valve_on_the_outlet_needs_direct_action(inflow, end):
 
 
 def test_the_integral_waits_while_the_output_is_at_its_end():
-    """More inflow than the open valve lets out for a while: the level is back soon, not after the time of the excess."""
+    """More inflow than the open valve lets out for a while: the level is soon back."""
     courses = {"Fi": InputCourse(0.5).plus(step(0.6, 1.0), step(-0.6, 6.0))}
     t = np.linspace(0, 30, 301)
     kept = simulate_open_loop(load_plant("level-loop"), t, courses)

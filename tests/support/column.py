@@ -1,4 +1,4 @@
-"""A distillation column by hand: balances of amounts M x, stage by stage, with the equilibrium as vapour over liquid."""
+"""A distillation column by hand: balances of amounts M x, stage by stage."""
 
 from collections.abc import Mapping
 from typing import Any

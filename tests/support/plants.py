@@ -8,11 +8,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-import instruments
 import numpy as np
-from column import column
 from scipy.integrate import solve_ivp
 
+import instruments
+from column import column
 from looplab.engine.nonlinear import CompiledModel
 
 Values = Mapping[str, Any]

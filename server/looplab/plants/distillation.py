@@ -103,11 +103,11 @@ def _near(N: int, feed_tray: int, u: dict[str, float]) -> dict[str, float]:
 
 def _parameters() -> list[dict[str, Any]]:
     level = "chosen: fast beside the compositions"
+    weir = "holds 10 mol on a tray above the feed, as the book does"
     rows: list[tuple[str, float, str, float, float, str, str, str]] = [
         ("alpha", ALPHA, "-", 1.01, 20, r"\alpha", "relative volatility", LUYBEN),
         ("q", Q, "-", 0, 1, "q", "liquid fraction of the feed", f"{LUYBEN}: boiling liquid"),
-        ("k_w", K_W, "mol^-0.5/min", 0.1, 1000, "k_w", "Francis weir: flow over it at 1 mol above its edge")
-        + ("holds 10 mol on a tray above the feed, as the book does",),
+        ("k_w", K_W, "mol^-0.5/min", 0.1, 1000, "k_w", "flow over the weir at 1 mol above its edge", weir),
         ("M_w", M_W, "mol", 0, 100, "M_w", "holdup of a tray up to the edge of its weir", "chosen: half of the 10 mol"),
         ("M_D_set", HOLDUP, "mol", 1, 1000, r"M_{D,\mathrm{sp}}", "setpoint of the drum's holdup", LUYBEN),
         ("M_B_set", HOLDUP, "mol", 1, 1000, r"M_{B,\mathrm{sp}}", "setpoint of the base's holdup", LUYBEN),

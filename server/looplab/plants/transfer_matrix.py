@@ -79,7 +79,11 @@ class TransferMatrix:
     inputs: tuple[Signal, ...]
     outputs: tuple[Signal, ...]
     entries: tuple[tuple[Entry, ...], ...]
-    operating_points: tuple[()] = ()
+
+    @property
+    def operating_points(self) -> tuple[()]:
+        """None: it is one already."""
+        return ()
 
     def gains(self) -> FloatArray:
         """The outputs at rest for a unit of each input, shape (outputs, inputs)."""
@@ -118,13 +122,13 @@ def transfer_matrix_document(plant_id: str) -> dict[str, Any]:
 def load_transfer_matrix(plant_id: str) -> TransferMatrix:
     """One of them, ready to compute; a KeyError for any other id."""
     document = transfer_matrix_document(plant_id)
-    signals = {kind: tuple(Signal(**each) for each in document[kind]) for kind in ("inputs", "outputs")}
+    inputs, outputs = (tuple(Signal(**each) for each in document[kind]) for kind in ("inputs", "outputs"))
     entries = tuple(
         tuple(Entry(each["K"], tuple(each["leads"]), tuple(each["lags"]), each["theta"]) for each in row)
         for row in document["entries"]
     )
     text = {name: document[name] for name in ("id", "title", "summary", "notes", "time_unit", "source")}
-    return TransferMatrix(**text, **signals, entries=entries)
+    return TransferMatrix(**text, inputs=inputs, outputs=outputs, entries=entries)
 
 
 def matrix_response(
