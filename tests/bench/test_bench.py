@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from looplab.bench import accuracy, loci, moves, ours, peer
+from looplab.bench import accuracy, column, loci, moves, ours, peer
 from looplab.bench.scenarios import DELAY_FREE
 from looplab.cli import app
 from references import reference
@@ -87,6 +87,15 @@ def test_both_draw_the_locus_of_one_system(locus: loci.Locus) -> None:
         L = L / (s - pole)
     np.testing.assert_allclose(K * L, -1.0, atol=1e-3)
     assert mine.complete
+
+
+@pytest.mark.parametrize("controlled", [False, True])
+def test_the_column_is_the_same_for_all(controlled: bool) -> None:
+    work = column.Column(controlled)
+    value = column.SETPOINT if controlled else 129.0
+    ours = work.ours(value)
+    for peer in (work.scipy, work.control):
+        np.testing.assert_allclose(ours, peer(value), rtol=2e-5)
 
 
 def test_no_gain_is_timed_twice() -> None:

@@ -26,13 +26,13 @@ def main(arguments: Sequence[str] = ()) -> int:
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-    from looplab.bench import accuracy, loci, machine, moves, report, server
+    from looplab.bench import accuracy, column, loci, machine, moves, report, server
 
     console = Console()
     rounds = 5 if options.quick else 40
     requests = 100 if options.quick else 600
     results: dict[str, object] = {"machine": machine.describe(), "quick": options.quick, "rounds": rounds}
-    steps = (len(moves.COMPARISONS) + len(loci.LOCI)) * rounds + len(accuracy.CASES)
+    steps = (len(moves.COMPARISONS) + len(loci.LOCI) + len(column.ROWS)) * rounds + len(accuracy.CASES)
     steps += 0 if options.no_server else server.STEPS
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True) as progress:
@@ -43,6 +43,7 @@ def main(arguments: Sequence[str] = ()) -> int:
 
         results["accuracy"] = accuracy.measure(tick)
         results["moves"] = [*moves.measure(rounds, tick), *loci.measure(rounds, tick)]
+        results["column"] = column.measure(rounds, lambda: tick("a distillation column"))
         results["server"] = None if options.no_server else server.measure(requests, tick)
     report.show(console, results)
     if options.out is not None:
