@@ -79,9 +79,7 @@ class Column:
         """States by solve_ivp."""
         from scipy.integrate import solve_ivp
 
-        found = solve_ivp(
-            lambda t, x: self.f(x, value), (0.0, HORIZON), self.x0, "LSODA", self.t, rtol=RTOL, atol=RTOL
-        )
+        found = solve_ivp(lambda t, x: self.f(x, value), (0.0, HORIZON), self.x0, "LSODA", self.t, rtol=RTOL, atol=RTOL)
         return found.y[:44].T
 
     def control(self, value: float) -> Any:
