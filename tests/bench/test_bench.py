@@ -93,9 +93,9 @@ def test_both_draw_the_locus_of_one_system(locus: loci.Locus) -> None:
 def test_the_column_is_the_same_for_all(controlled: bool) -> None:
     work = column.Column(controlled)
     value = column.SETPOINT if controlled else 129.0
-    ours = work.ours(value)
-    for peer in (work.scipy, work.control):
-        np.testing.assert_allclose(ours, peer(value), rtol=2e-5)
+    found = work.ours(value)
+    for other in (work.scipy, work.control):
+        np.testing.assert_allclose(found, other(value), rtol=2e-5)
 
 
 def test_no_gain_is_timed_twice() -> None:
