@@ -288,3 +288,36 @@ def test_a_plant_comes_with_its_drawing_its_values_and_its_pace(client: Any) -> 
     assert plant["values"]["F"] == pytest.approx(values["beta"] * math.sqrt(h), rel=1e-14)
     assert plant["drawing"]["shapes"]
     assert plant["group"] == "Tanks"
+
+
+def test_a_transfer_matrix_among_the_plants(client: Any, post: Any) -> None:
+    plants = PlantList.model_validate_json(client.get("/api/v1/plants").content).plants
+    assert {plant.kind for plant in plants} == {"nonlinear", "transfer-matrix"}
+    answer = PlantAnswer.model_validate_json(client.get("/api/v1/plants/ethanol-water").content)
+    assert answer.kind == "transfer-matrix"
+    assert answer.equations[0].path == "entries[0][0]"
+    assert answer.equations[0].latex == r"\frac{y_1(s)}{u_1(s)} = \frac{0.66 e^{-2.6 s}}{6.7 s + 1}"
+    steps = {"u1": {"add": [{"type": "step", "amplitude": 0.1, "start": 1}]}}
+    found = simulated(post, "/plants/ethanol-water/simulate", {"horizon": 40, "points": 81, "inputs": steps})
+    late = np.maximum(np.array(found["t"]) - 3.6, 0)
+    np.testing.assert_allclose(found["outputs"]["y1"], 0.066 * (1 - np.exp(-late / 6.7)), atol=1e-12)
+    assert found["states"] == {} and found["inputs"]["u2"] == [0.0] * 81
+
+
+@pytest.mark.parametrize(
+    ("more", "field"),
+    [
+        ({"parameters": {"K": 1}}, "parameters"),
+        ({"initial": {"y1": 1}}, "initial"),
+        ({"start": 2}, "start"),
+        ({"operating_point": "nominal"}, "operating_point"),
+        ({"inputs": {"R": 1}}, "inputs.R"),
+    ],
+)
+def test_a_transfer_matrix_has_inputs_only(post: Any, more: dict[str, Any], field: str) -> None:
+    assert refused(post, "/plants/ethanol-water/simulate", {"horizon": 10, **more}).path == field
+
+
+def test_a_transfer_matrix_is_not_controlled(post: Any) -> None:
+    loop = {"output": "y1", "input": "u1", "setpoint": 0, "controller": {"type": "pid", "Kc": 1}}
+    assert refused(post, "/plants/ethanol-water/control", {"horizon": 10, "loops": [loop]}).path == "plant_id"

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from looplab.bench import accuracy, loci, moves, nonlinear_loops, ours, peer, saturated
+from looplab.bench import accuracy, column, loci, moves, nonlinear_loops, ours, peer, saturated
 from looplab.bench.nonlinear_scenarios import SCENARIOS, ControlScenario
 from looplab.bench.scenarios import DELAY_FREE
 from looplab.cli import app
@@ -108,6 +108,15 @@ def test_both_do_the_same_control_loop(scenario: ControlScenario, sampled: bool)
     found, theirs = nonlinear_loops.ours(short, sampled)(scenario.Kc), peer_work(scenario.Kc)
     np.testing.assert_allclose(found, theirs, atol=2e-5 * np.abs(theirs).max())
     assert np.ptp(found) > 1e-2
+
+
+@pytest.mark.parametrize("controlled", [False, True])
+def test_the_column_is_the_same_for_all(controlled: bool) -> None:
+    work = column.Column(controlled)
+    value = column.SETPOINT if controlled else 129.0
+    found = work.ours(value)
+    for other in (work.scipy, work.control):
+        np.testing.assert_allclose(found, other(value), rtol=2e-5)
 
 
 def test_no_gain_is_timed_twice() -> None:

@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
+import instruments
+from column import column
 from looplab.engine.nonlinear import CompiledModel
 
 Values = Mapping[str, Any]
@@ -175,6 +177,14 @@ RUNS = {
     "jacketed-cooler-thin-wall": Run(jacketed_cooler_thin_wall, 4000, 1500, {"Q": 40, "Tc": 280}),
     "cruise-control": Run(cruise_control, 120, 20, {"slope": 0.06, "throttle": 0.6}, parameters={"gear": 3}),
     "body-temperature": Run(body_temperature, 240, 90, {"T_amb": 5, "M": 80}, {"T_amb": 38, "M": 120}),
+    "distillation": Run(column, 3, 1, {"R": 120, "V": 180, "F": 110, "z": 0.4}, parameters={"q": 0.8}),
+    "level-loop": Run(instruments.level_loop, 8, 1, {"h_sp": 1.05, "Fi": 0.6}, {"Fi": 0.45}, {"v_m": 0.1}),
+    "orifice": Run(instruments.orifice, 2, 1, {"q": 0.001}, start={"dp_m": 5000}),
+    "rtd": Run(instruments.rtd, 20, 5, {"T_f": 100}, start={"T": 60}),
+    "dp-cell": Run(instruments.dp_cell, 0.1, 0.02, {"p1": 90000, "p2": 110000}, start={"x": 0}),
+    "control-valve": Run(instruments.control_valve, 0.1, 0.04, {"p": 90}, {"p": 30}, {"x": 0.6}),
+    "pump-valve": Run(instruments.pump_valve, 0.8, 0.5, {"x_v": 0.5}, start={"F": 5}),
+    "pressure-regulator": Run(instruments.pressure_regulator, 4, 2, {"p_s": 4, "n": 1.5}),
 }
 
 

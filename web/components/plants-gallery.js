@@ -16,7 +16,8 @@ export class PlantsGallery extends HTMLElement {
     this.replaceChildren(h("p", { class: "empty" }, "Loading the plants…"));
     try {
       const { plants } = await createApi().plants();
-      this.#show(plants);
+      // The page of a plant turns knobs of states and parameters: a transfer matrix has neither.
+      this.#show(plants.filter(({ kind }) => kind === "nonlinear"));
     } catch (error) {
       const retry = h("button", { type: "button", class: "button", onclick: () => void this.#load() }, "Try again");
       this.replaceChildren(h("p", { class: "empty" }, `The plants could not be loaded. ${error instanceof Error ? error.message : ""} `, retry));

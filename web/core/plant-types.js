@@ -23,9 +23,9 @@
  */
 
 /** @typedef {{path: string, latex: string, mathml: string}} Equation */
-/** @typedef {{document: PlantDocument, equations: Equation[], group: string, drawing: object | null, values: Values, time_scale: number | null}} PlantAnswer */
+/** @typedef {{kind: "nonlinear" | "transfer-matrix", document: PlantDocument, equations: Equation[], group: string, drawing: object | null, values: Values, time_scale: number | null}} PlantAnswer */
 /**
- * @typedef {{id: string, title: string, summary: string, group: string, notes: string, time_unit: string, inputs: string[], states: string[],
+ * @typedef {{id: string, kind: "nonlinear" | "transfer-matrix", title: string, summary: string, group: string, notes: string, time_unit: string, inputs: string[], states: string[],
  *   outputs: string[], operating_points: string[], drawing: object | null, values: Values}} PlantSummary
  */
 /** @typedef {{name: string, message: string, t: number}} RunEvent */

@@ -34,6 +34,11 @@ async function open(id, main) {
     main.replaceChildren(h("h1", {}, "No such plant"), h("p", { class: "empty" }, `${message}${hint ? `: ${hint}` : ""}. `, h("a", { href: "/plants" }, "See all plants")));
     return;
   }
+  if (answer.kind !== "nonlinear") {
+    const where = h("a", { href: `/api/v1/plants/${encodeURIComponent(id)}` }, "its document");
+    main.replaceChildren(h("h1", {}, answer.document.title), h("p", {}, answer.document.summary ?? ""), h("p", {}, "This plant is a matrix of transfer functions, which the API simulates: ", where, "."));
+    return;
+  }
   const bench = createPlantBench(answer, location.search);
   const pace = paceOf(answer.time_scale, bench.timeUnit);
   const { model } = bench;

@@ -8,6 +8,7 @@ from typing import Annotated, Literal, Protocol
 from fastapi import Depends, Request
 from pydantic import Field
 
+from looplab.engine.errors import InvalidInput
 from looplab.engine.nonlinear.control_loop import ControlLoop
 from looplab.engine.nonlinear.inputs import InputCourse
 from looplab.jobs import WorkerPool
@@ -107,6 +108,20 @@ def open_loop_settings(request: SimulationRequest, model: ModelParts, start: flo
         request.method,
         start,
     )
+
+
+def matrix_settings(request: RunRequest, matrix: ModelParts) -> OpenLoopSettings:
+    """The request for a transfer matrix, which has inputs and nothing else to set.
+
+    Raises
+    ------
+    InvalidInput
+        Something else is set.
+    """
+    for name, given in (("parameters", request.parameters), ("initial", request.initial), ("start", request.start)):
+        if given:
+            raise InvalidInput("a transfer matrix starts at rest at t = 0 and has no parameters", field=name)
+    return open_loop_settings(request, matrix)
 
 
 def control_loops(request: ControlRequest) -> list[ControlLoop]:

@@ -26,13 +26,13 @@ def main(arguments: Sequence[str] = ()) -> int:
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-    from looplab.bench import accuracy, loci, machine, moves, nonlinear_loops, report, saturated, server
+    from looplab.bench import accuracy, column, loci, machine, moves, nonlinear_loops, report, saturated, server
 
     console = Console()
     rounds = 5 if options.quick else 40
     requests = 100 if options.quick else 600
     results: dict[str, object] = {"machine": machine.describe(), "quick": options.quick, "rounds": rounds}
-    steps = (len(moves.COMPARISONS) + len(loci.LOCI)) * rounds + len(accuracy.CASES)
+    steps = (len(moves.COMPARISONS) + len(loci.LOCI) + len(column.ROWS)) * rounds + len(accuracy.CASES)
     steps += 0 if options.no_server else server.STEPS
     # The peer takes seconds for some of these.
     few = max(3, rounds // 8)
@@ -47,6 +47,7 @@ def main(arguments: Sequence[str] = ()) -> int:
         results["accuracy"] = accuracy.measure(tick)
         results["moves"] = [*moves.measure(rounds, tick), *loci.measure(rounds, tick)]
         results["control"] = saturated.measure(few, tick) + nonlinear_loops.measure(few, tick)
+        results["column"] = column.measure(rounds, lambda: tick("a distillation column"))
         results["server"] = None if options.no_server else server.measure(requests, tick)
     report.show(console, results)
     if options.out is not None:

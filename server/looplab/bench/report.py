@@ -7,6 +7,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from looplab.bench.column import NOTE
 from looplab.bench.nonlinear_loops import RTOL
 
 
@@ -19,11 +20,11 @@ def _table(title: str, left: tuple[str, ...], right: tuple[str, ...], caption: s
     return table
 
 
-def _moves(rows: list[dict[str, Any]]) -> Table:
+def _moves(rows: list[dict[str, Any]], title: str, peer: str, note: str = "") -> Table:
     notes = " ".join(f"{r['what'].capitalize()}: {r['note']}." for r in rows if r["note"])
-    caption = f"Processor time: medians in ms, their ratio, quartiles of the ratio of neighbouring calls. {notes}"
-    columns = ("looplab", "control", "ratio", "quartiles", "goal")
-    table = _table("The same work by looplab and by python-control, in turn", ("",), columns, caption)
+    caption = f"Processor time: medians in ms, their ratio, quartiles of the ratio of neighbouring calls. {notes}{note}"
+    columns = ("looplab", peer, "ratio", "quartiles", "goal")
+    table = _table(title, ("",), columns, caption)
     loop = None
     for r in rows:
         if r["loop"] != loop:
@@ -94,7 +95,10 @@ def show(console: Console, results: dict[str, Any]) -> None:
     threads = ", ".join(sorted(set(machine["blas_threads"].values())))
     console.print(f"Python {machine['python']}, {machine['system']}, {machine['cores']} cores, BLAS threads {threads}")
     console.print(f"{packages}\n")
-    for table in (_moves(results["moves"]), _control(results["control"]), _accuracy(results["accuracy"])):
+    work = _moves(results["moves"], "The same work by looplab and by python-control, in turn", "control")
+    column_title = "A distillation column of 44 states, 500 points"
+    simulated = _moves(results["column"], column_title, "other", f"{NOTE.capitalize()}.")
+    for table in (work, simulated, _control(results["control"]), _accuracy(results["accuracy"])):
         console.print(table, "")
     if results["server"]:
         console.print(_server(results["server"]), "")

@@ -17,7 +17,8 @@ from looplab.engine.nonlinear import CompiledModel, compile_model, latex_equatio
 from looplab.engine.nonlinear.control_loop import ControlLoop
 from looplab.engine.nonlinear.inputs import InputCourse
 from looplab.engine.systems.polynomial import FloatArray
-from looplab.plants import load_plant
+from looplab.plants import load_plant, load_transfer_matrix
+from looplab.plants.transfer_matrix import matrix_response
 
 if TYPE_CHECKING:
     from looplab.engine.nonlinear.simulation import Simulation
@@ -94,6 +95,29 @@ def simulate(source: ModelSource, settings: OpenLoopSettings) -> dict[str, Any]:
             method=settings.method,
         )
     return _simulation_answer(model, settings, found)
+
+
+def simulate_matrix(plant_id: str, settings: OpenLoopSettings) -> dict[str, Any]:
+    """The response of a transfer matrix as the API answers it, arrays as ndarrays."""
+    matrix = load_transfer_matrix(plant_id)
+    found = matrix_response(matrix, settings.inputs, settings.horizon, settings.points)
+    outputs, inputs = (
+        {each.name: np.ascontiguousarray(column) for each, column in zip(signals, values.T, strict=True)}
+        for signals, values in ((matrix.outputs, found.y), (matrix.inputs, found.u))
+    )
+    return {
+        "time_unit": matrix.time_unit,
+        "horizon": settings.horizon,
+        "t": found.t,
+        "states": {},
+        "outputs": outputs,
+        "variables": {},
+        "inputs": inputs,
+        "events": [],
+        "truncated_at": found.truncated_at,
+        "truncated_reason": found.truncated_reason,
+        "calls": 0,
+    }
 
 
 def control(source: ModelSource, settings: OpenLoopSettings, loops: Sequence[ControlLoop]) -> dict[str, Any]:

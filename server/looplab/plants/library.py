@@ -11,11 +11,12 @@ from typing import Any
 
 from looplab.engine.errors import InvalidInput
 from looplab.engine.nonlinear import BUILT_IN, CompiledModel, compile_model
+from looplab.plants.distillation import distillation
 from looplab.plants.tanks_in_series import tanks_in_series
 
 Document = dict[str, Any]
 # Plants too long to write by hand, such as a column with a state for each tray: id -> what writes the document.
-BUILDERS: dict[str, Callable[[], Document]] = {"tanks-in-series": tanks_in_series}
+BUILDERS: dict[str, Callable[[], Document]] = {"distillation": distillation, "tanks-in-series": tanks_in_series}
 
 
 class UnknownPlant(InvalidInput):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -11,10 +11,17 @@ from looplab.api.answers.base import Answer, Numbers, Reasons
 ByName = Annotated[dict[str, Numbers], Field(description="One curve for each name.")]
 
 
+PlantKind = Annotated[
+    Literal["nonlinear", "transfer-matrix"],
+    Field(description="A transfer matrix has no states, and its signals are deviations from where the plant ran."),
+]
+
+
 class PlantSummary(Answer):
     """One entry of the list of plants."""
 
     id: str
+    kind: PlantKind
     title: str
     summary: str
     group: Annotated[str, Field(description="The shelf of the library.")]
@@ -37,14 +44,15 @@ class PlantList(Answer):
 class EquationAnswer(Answer):
     """One equation as a formula."""
 
-    path: Annotated[str, Field(description="Where it stands in the document, e.g. states[0].equation")]
+    path: Annotated[str, Field(description="Where it stands in the document, e.g. states[0].equation or entries[0][1]")]
     latex: str
     mathml: str
 
 
 class PlantAnswer(Answer):
-    """A plant: its document, which /models/simulate takes too, and its equations."""
+    """A plant: its document, which /models/simulate takes too unless it is a transfer matrix, and its equations."""
 
+    kind: PlantKind
     document: dict[str, Any]
     equations: list[EquationAnswer]
     group: Annotated[str, Field(description="The shelf of the library.")]

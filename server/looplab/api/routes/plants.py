@@ -12,12 +12,32 @@ from looplab.api.answers.nonlinear import ControlAnswer, PlantAnswer, PlantList,
 from looplab.api.docs import BUSY, ERRORS
 from looplab.api.encode import json_response
 from looplab.api.errors import ApiError
-from looplab.api.simulations import ControlRequest, RunRequest, Workers, control_loops, open_loop_settings
+from looplab.api.simulations import (
+    ControlRequest,
+    RunRequest,
+    Workers,
+    control_loops,
+    matrix_settings,
+    open_loop_settings,
+)
 from looplab.api.strict import StrictRoute
+from looplab.engine.errors import InvalidInput
 from looplab.engine.nonlinear import CompiledModel, latex_equations, slowest_time_constant
-from looplab.jobs.tasks import PLANT, ModelSource, control, simulate
+from looplab.jobs.tasks import PLANT, ModelSource, control, simulate, simulate_matrix
 from looplab.labs.text import render_math
-from looplab.plants import UnknownPlant, group_of, load_plant, plant_document, plant_drawing, plant_ids, shelved
+from looplab.plants import (
+    UnknownPlant,
+    group_of,
+    load_plant,
+    load_transfer_matrix,
+    plant_document,
+    plant_drawing,
+    plant_ids,
+    shelved,
+    transfer_matrix_document,
+    transfer_matrix_ids,
+)
+from looplab.plants.transfer_matrix import TransferMatrix
 
 router = APIRouter(tags=["plants"], route_class=StrictRoute)
 
@@ -69,13 +89,32 @@ CONTROL_EXAMPLES: dict[str, Any] = {
 
 @cache
 def _summaries() -> list[dict[str, Any]]:
-    return [_summary(load_plant(plant_id)) for plant_id in shelved(plant_ids())]
+    matrices = transfer_matrix_ids()
+    return [
+        _matrix_summary(load_transfer_matrix(plant_id)) if plant_id in matrices else _summary(load_plant(plant_id))
+        for plant_id in shelved([*plant_ids(), *matrices])
+    ]
+
+
+def _matrix_summary(matrix: TransferMatrix) -> dict[str, Any]:
+    return {
+        **{name: getattr(matrix, name) for name in ("id", "title", "summary", "notes", "time_unit")},
+        "kind": "transfer-matrix",
+        "group": group_of(matrix.id),
+        "inputs": [each.name for each in matrix.inputs],
+        "states": [],
+        "outputs": [each.name for each in matrix.outputs],
+        "operating_points": [],
+        "drawing": None,
+        "values": {},
+    }
 
 
 def _summary(model: CompiledModel) -> dict[str, Any]:
     document = model.document
     return {
         **{name: getattr(document, name) for name in ("id", "title", "summary", "notes", "time_unit")},
+        "kind": "nonlinear",
         "group": group_of(document.id),
         "inputs": model.input_names,
         "states": model.state_names,
@@ -100,6 +139,8 @@ def _values(model: CompiledModel) -> dict[str, float]:
 
 def find_plant(plant_id: str) -> CompiledModel:
     """The plant; raises ApiError 404."""
+    if plant_id in transfer_matrix_ids():
+        raise InvalidInput("this plant is linear, a transfer matrix", field="plant_id", hint="read or simulate it")
     try:
         return load_plant(plant_id)
     except UnknownPlant as error:
@@ -112,6 +153,24 @@ def list_plants() -> Response:
     return json_response({"plants": _summaries()})
 
 
+def _matrix_answer(matrix: TransferMatrix) -> dict[str, Any]:
+    equations = []
+    for i, (output, row) in enumerate(zip(matrix.outputs, matrix.entries, strict=True)):
+        for j, (given, entry) in enumerate(zip(matrix.inputs, row, strict=True)):
+            latex = rf"\frac{{{output.latex}(s)}}{{{given.latex}(s)}} = {entry.to_latex()}"
+            path = f"entries[{i}][{j}]"
+            equations.append({"path": path, "latex": latex, "mathml": render_math(latex, display=True)})
+    return {
+        "kind": "transfer-matrix",
+        "document": transfer_matrix_document(matrix.id),
+        "equations": equations,
+        "group": group_of(matrix.id),
+        "drawing": None,
+        "values": {},
+        "time_scale": max(lag for row in matrix.entries for entry in row for lag in entry.lags),
+    }
+
+
 @router.get(
     "/plants/{plant_id}",
     summary="One plant",
@@ -119,6 +178,8 @@ def list_plants() -> Response:
 )
 def show_plant(plant_id: PlantId) -> Response:
     """The plant's document, as an author would write it, its equations as formulas, and its drawing."""
+    if plant_id in transfer_matrix_ids():
+        return json_response(_matrix_answer(load_transfer_matrix(plant_id)))
     model = find_plant(plant_id)
     equations = [
         {"path": each.path, "latex": each.latex, "mathml": render_math(each.latex, display=True)}
@@ -126,6 +187,7 @@ def show_plant(plant_id: PlantId) -> Response:
     ]
     return json_response(
         {
+            "kind": "nonlinear",
             "document": plant_document(plant_id),
             "equations": equations,
             "group": group_of(plant_id),
@@ -146,8 +208,12 @@ async def simulate_plant(
 ) -> Response:
     """States, outputs and inputs of a plant over time, from its own initial state or another one.
 
-    Inputs step, ramp, oscillate, follow a table or carry noise, each a sum of these; events are located.
+    Inputs step, ramp, oscillate, follow a table or carry noise, each a sum of these; events are located. A transfer
+    matrix starts at rest, and all its signals are deviations.
     """
+    if plant_id in transfer_matrix_ids():
+        answer = await workers.run(simulate_matrix, plant_id, matrix_settings(request, load_transfer_matrix(plant_id)))
+        return json_response(answer, request.arrays)
     settings = open_loop_settings(request, find_plant(plant_id).document, request.start)
     answer = await workers.run(simulate, ModelSource(PLANT, plant_id), settings)
     return json_response(answer, request.arrays)

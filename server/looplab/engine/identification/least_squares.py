@@ -193,9 +193,7 @@ def least_squares(record: Record, structure: Structure, unknowns: Unknowns | Non
     model = _model(structure, K, shape, theta)
     order = [0, *range(c.size, count)]
     scales = np.array([1.0, *shape, problem.span])
-    intervals = confidence_intervals(
-        np.array([K, *shape, theta]), scales, _jacobian(problem, v, c), order, residual
-    )
+    intervals = confidence_intervals(np.array([K, *shape, theta]), scales, _jacobian(problem, v, c), order, residual)
     columns = problem.rest(shape, record.t)
     extra = sum((k * column for k, column in zip(c[2:], columns[1:], strict=True)), np.zeros(record.t.size))
     estimated = {"y0": float(c[1])}

@@ -127,7 +127,7 @@ class Run:
         self.rhs.enter(begin)
         try:
             self.rhs.f(begin, self.x)
-            on = self.watch.on(self.watch.measure(begin, self.x))
+            on = self.watch.on(begin, self.x)
         except (NonFinite, RunsAway) as error:
             if len(self.samples) == 1 and not self.on:
                 raise
@@ -148,7 +148,7 @@ class Run:
                 if solver is None:
                     solver = self.used = self._solver(finish, max_step, self.used)
                 x = solver.advance(stop)
-                self._look(stop, x, self.watch.on(self.watch.measure(stop, x)))
+                self._look(stop, x, self.watch.on(stop, x))
             except (NonFinite, RunsAway, SolverFailed) as error:
                 self._approach(stop, error)
                 if self.cut is None:
@@ -170,7 +170,7 @@ class Run:
 
     def _look(self, stop: float, x: FloatArray, on: list[bool]) -> None:
         """Go on to a state; events between here and there happen first."""
-        turned = [i for i, now in enumerate(on) if now and not self.on[i]]
+        turned = [i for i, now in enumerate(on) if now and not self.on[i]] if on != self.on else []
         if turned:
             begin, start = self.t, self.x
 
@@ -202,14 +202,14 @@ class Run:
             target = stop if reach >= stop - self.t else self.t + reach
             try:
                 x = self._solver(target, min(self.max_step, 0.5 * reach)).advance(target)
-                self._look(target, x, self.watch.on(self.watch.measure(target, x)))
+                self._look(target, x, self.watch.on(target, x))
             except (NonFinite, RunsAway, SolverFailed) as again:
                 error, reach = again, 0.25 * reach
                 continue
             if self.cut is not None or target == stop:
                 return
             reach *= 2.0
-        near = self.watch.near(self.watch.measure(self.t, self.x))
+        near = self.watch.near(self.t, self.x, [x for _, x in self.samples])
         if near:
             self._happen([(self.t, near[0])], lambda _: self.x)
         else:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from operator import le
 
+import numpy as np
 from scipy.optimize import brentq
 
 from looplab.engine.nonlinear.model import CompiledModel
@@ -73,30 +75,55 @@ class Watch:
             message = f"{state.name} grows beyond {LARGEST_STATE:g}: it runs away"
             self.watched.append(Watched(state.name, message, True, False, True))
         self.strict = [each.strict for each in self.watched]
-        self.largest = [0.0] * len(self.watched)
+        self.largest = [0.0] * len(document.events)
+        self.low, self.high = [-LARGEST_STATE] * len(document.states), [LARGEST_STATE] * len(document.states)
+        for index, sign, end in self.bounds:
+            if sign < 0:
+                self.low[index] = max(-end, self.low[index])
+            else:
+                self.high[index] = min(end, self.high[index])
+        self.inside = [False] * (len(self.watched) - len(document.events))
 
     def measure(self, t: float, x: FloatArray) -> list[float]:
         """Values of all that is watched, positive where it is on."""
         values = x.tolist()
-        out = [
-            *(self.model.events(t, values, self.u(t), self.p) if self.model.document.events else ()),
+        return [
+            *self._events(t, values),
             *(sign * values[index] - end for index, sign, end in self.bounds),
             *(abs(value) - LARGEST_STATE for value in values),
         ]
-        self.largest = [max(abs(value), seen) for value, seen in zip(out, self.largest, strict=True)]
-        return out
 
-    def on(self, values: list[float]) -> list[bool]:
+    def on(self, t: float, x: FloatArray) -> list[bool]:
         """Which are on."""
-        return [value > 0.0 or (value == 0.0 and not strict) for value, strict in zip(values, self.strict, strict=True)]
+        values = x.tolist()
+        # Nearly always every state is within its bounds: seen at once, however many there are.
+        if all(map(le, self.low, values)) and all(map(le, values, self.high)):
+            events = self._events(t, values)
+            self.largest = [max(abs(value), seen) for value, seen in zip(events, self.largest, strict=True)]
+            return [*map(_is_on, events, self.strict), *self.inside]
+        return [_is_on(value, strict) for value, strict in zip(self.measure(t, x), self.strict, strict=True)]
 
-    def near(self, values: list[float]) -> list[int]:
-        """Those that stop a simulation and are off by no more than rounding, seen from where they have been."""
+    def near(self, t: float, x: FloatArray, states: Sequence[FloatArray]) -> list[int]:
+        """Those that stop a simulation and are off by no more than rounding, seen from where they have been.
+
+        ``states`` are those that it has passed, each (n,).
+        """
+        passed = np.array([x, *states])
+        bounds = [float(np.abs(sign * passed[:, index] - end).max()) for index, sign, end in self.bounds]
+        largest = [*self.largest, *bounds, *[LARGEST_STATE] * passed.shape[1]]
+        values = self.measure(t, x)
         return [
             index
             for index, each in enumerate(self.watched)
-            if each.stops and abs(values[index]) <= _REACHED * self.largest[index]
+            if each.stops and abs(values[index]) <= _REACHED * largest[index]
         ]
+
+    def _events(self, t: float, values: list[float]) -> tuple[float, ...]:
+        return self.model.events(t, values, self.u(t), self.p) if self.model.document.events else ()
+
+
+def _is_on(value: float, strict: bool) -> bool:
+    return value > 0.0 or (value == 0.0 and not strict)
 
 
 def crossing(state_at: Callable[[float], FloatArray], measure: Measure, index: int, span: tuple[float, float]) -> float:
