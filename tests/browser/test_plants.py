@@ -47,7 +47,7 @@ def test_the_library_shows_every_plant_and_finds_by_word(page: Page):
     page.get_by_label("Search").fill("pendulum")
     page.keyboard.press("Tab")
     page.keyboard.press("Enter")
-    expect(page.get_by_role("heading", level=1)).to_have_text(plant_document("cart-pendulum")["title"])
+    expect(page.get_by_role("heading", level=1)).to_have_text(plant_document("cart-pendulum")["title"], timeout=20_000)
 
 
 def test_a_run_follows_the_exact_course_and_grows_its_curve(page: Page):
