@@ -229,12 +229,13 @@ export function mount(host, store, api) {
   async function learnRules() {
     try {
       known = (await api.rules()).rules;
+      offer(known);
     } catch (error) {
+      // Without them the present and the best settings can still be compared.
+      known = [];
       toast().say(error instanceof Error ? error.message : "The rules could not be asked.");
-      return;
     }
-    offer(known);
-    // Now that the rules are known there is something to ask.
+    // Now there is something to ask.
     choose({});
   }
   void learnRules();
