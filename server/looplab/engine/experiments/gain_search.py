@@ -42,7 +42,7 @@ class GainSearch:
     trials: tuple[Trial, ...]
 
 
-def search_ultimate_gain(run: Callable[[float], Oscillation], start: float) -> GainSearch:
+def search_ultimate_gain(run: Callable[[float], Oscillation], start: float, doublings: int = _DOUBLINGS) -> GainSearch:
     """Gain at which the swings neither grow nor decay.
 
     The gain is doubled from ``start`` until the swings grow. What was doubled to is no estimate: it may be twice too
@@ -55,6 +55,8 @@ def search_ultimate_gain(run: Callable[[float], Oscillation], start: float) -> G
         Gain -> the oscillation that a loop with this gain answers with.
     start : float
         A gain, with its sign, at which the swings decay.
+    doublings : int
+        How often the gain is doubled at most.
 
     Returns
     -------
@@ -76,7 +78,7 @@ def search_ultimate_gain(run: Callable[[float], Oscillation], start: float) -> G
     g_low = g_high = growth(start)
     if g_low > 0:
         raise NoConvergence("the loop already runs away at the gain that the search began with", field="Kc")
-    for _ in range(_DOUBLINGS):
+    for _ in range(doublings):
         high = 2.0 * low
         g_high = growth(high)
         if g_high > 0:

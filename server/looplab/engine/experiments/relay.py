@@ -111,11 +111,11 @@ def limit_cycle(
             t, u, y, switches, None, None, None, reason or "the relay has not switched often enough for a cycle"
         )
     Pu, before = float(switches[-1] - switches[-3]), float(switches[-3] - switches[-5])
-    swing, swing_before = (_half_height(t, y, dy, a, b) for a, b in zip(switches[[-3, -5]], switches[[-1, -3]], strict=True))
+    swing, swing_before = (
+        _half_height(t, y, dy, a, b) for a, b in zip(switches[[-3, -5]], switches[[-1, -3]], strict=True)
+    )
     if max(abs(Pu / before - 1.0), abs(swing / swing_before - 1.0)) > _STEADY:
-        return RelayRun(
-            t, u, y, switches, swing, Pu, None, "the cycle is not steady yet: the last two periods differ"
-        )
+        return RelayRun(t, u, y, switches, swing, Pu, None, "the cycle is not steady yet: the last two periods differ")
     try:
         point = relay_point(relay.amplitude, swing, Pu, relay.hysteresis)
     except EngineError as error:

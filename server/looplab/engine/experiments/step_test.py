@@ -77,10 +77,11 @@ class StepTest:
 
     def inputs(self, t: FloatArray, u0: float) -> FloatArray:
         """The input at the samples; the new value from the first sample at or after the step."""
-        return np.where(t >= self.made_at(t), u0 + self.applied(u0), u0)
+        return np.where(t >= self.made_at(), u0 + self.applied(u0), u0)
 
-    def made_at(self, t: FloatArray) -> float:
+    def made_at(self) -> float:
         """The step is made at a sample, so that the record tells when."""
+        t = self.times()
         return float(t[int(np.searchsorted(t, self.start * (1.0 - 1e-12)))])
 
     def measured(self, t: FloatArray, y: FloatArray) -> FloatArray:
@@ -131,13 +132,13 @@ def linear_step_test(plant: TransferFunction, test: StepTest, u0: float = 0.0, y
     """
     t = test.times()
     change = test.applied(u0)
-    found = simulate(plant, step(change, test.made_at(t)), test.horizon, test.points)
+    found = simulate(plant, step(change, test.made_at()), test.horizon, test.points)
     n = found.y.size
     y = y0 + found.y
     return StepTestResult(
         t[:n],
-        test.inputs(t, u0)[:n],
-        test.measured(t, np.append(y, np.zeros(t.size - n)))[:n],
+        test.inputs(t[:n], u0),
+        test.measured(t[:n], y),
         y,
         limited_note(test, change),
         found.truncated_at,

@@ -152,6 +152,6 @@ def ultimate_cycle(plant: TransferFunction) -> UltimateCycle:
 
 
 def _first_gain(plant: TransferFunction, high: float) -> float:
-    """A tenth of 1/|P(0)|, as one who knows the plant's gain would begin; of an integrator, a small part of the range."""
+    """A tenth of 1/|P(0)|, as one who knows the plant's gain would begin; else a small part of the range."""
     K = abs(plant.dc_gain)
     return min(0.1 / K, 0.5 * high) if np.isfinite(K) and K > 0 else 0.03 * high

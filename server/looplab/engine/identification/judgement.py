@@ -49,24 +49,23 @@ def warnings(record: Record, fitted: Fitted, residuals: FloatArray) -> tuple[str
         moved = float(np.ptp(y))
     if sigma * _SMALLEST_RATIO > moved:
         out.append(
-            f"what the input moves is only {moved / sigma:.1f} times the residuals: a larger step, or less noise, is needed"
+            f"what the input moves is only {moved / sigma:.1f} times the residuals: "
+            "a larger step, or less noise, is needed"
         )
     out += _length(record, fitted)
     if _runs_flat(y):
-        out.append(
-            "the output runs into a flat end, as where a sensor or valve is at its limit: saturation suspected"
-        )
+        out.append("the output runs into a flat end, as where a sensor or valve is at its limit: saturation suspected")
     if fitted.intervals is not None:
         values = vars(fitted.model)
-        wide = [
-            name for name, (low, high) in fitted.intervals.items() if high - low > 2 * _WIDE * abs(values[name])
-        ]
+        wide = [name for name, (low, high) in fitted.intervals.items() if high - low > 2 * _WIDE * abs(values[name])]
         # A dead time may well be none: its interval is judged against the time constants.
         tau = values.get("tau") or record.span
         low, high = fitted.intervals["theta"]
         wide = [name for name in wide if name != "theta" or high - low > _WIDE * tau]
         if wide:
-            out.append(f"{' and '.join(wide)} can hardly be told from these data: the interval is wider than half the value")
+            out.append(
+                f"{' and '.join(wide)} can hardly be told from these data: the interval is wider than half the value"
+            )
         if _coloured(r, float(np.ptp(y))):
             out.append(
                 "the residuals follow one another: the structure is too simple or the noise is coloured, and the "
@@ -80,7 +79,11 @@ def _length(record: Record, fitted: Fitted) -> list[str]:
         return []
     change = np.flatnonzero(input_changes(record)[1:])
     last = float(record.t[change[-1] + 1]) if change.size else float(record.t[0])
-    first = float(record.t[0]) if record.u[0] != record.u_before else (float(record.t[change[0] + 1]) if change.size else last)
+    first = (
+        float(record.t[0])
+        if record.u[0] != record.u_before
+        else (float(record.t[change[0] + 1]) if change.size else last)
+    )
     zeta = getattr(fitted.model, "zeta", 1.0)
     settle = fitted.model.theta + 3.0 * fitted.model.tau * max(zeta, 0.5)
     # An input that keeps moving shows the dynamics all along; it is the whole of it that must be long enough.

@@ -1,4 +1,4 @@
-"""Low-order models by least squares: the linear parameters in closed form, the others by search (variable projection)."""
+"""Low-order models by least squares: linear parameters in closed form, the others by search (variable projection)."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class _Problem:
     def linear(self, v: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Best linear parameters and the residual, for given others."""
         columns = self.columns(v)
-        c = np.linalg.lstsq(columns, self.y, rcond=None)[0]
+        c = np.asarray(np.linalg.lstsq(columns, self.y, rcond=None)[0], dtype=float)
         return c, self.y - columns @ c
 
     def residual(self, v: FloatArray) -> FloatArray:
@@ -193,9 +193,7 @@ def least_squares(record: Record, structure: Structure, unknowns: Unknowns | Non
     model = _model(structure, K, shape, theta)
     order = [0, *range(c.size, count)]
     scales = np.array([1.0, *shape, problem.span])
-    intervals = confidence_intervals(
-        np.array([K, *shape, theta]), scales, _jacobian(problem, v, c), order, residual
-    )
+    intervals = confidence_intervals(np.array([K, *shape, theta]), scales, _jacobian(problem, v, c), order, residual)
     columns = problem.rest(shape, record.t)
     extra = sum((k * column for k, column in zip(c[2:], columns[1:], strict=True)), np.zeros(record.t.size))
     estimated = {"y0": float(c[1])}

@@ -163,9 +163,7 @@ def _thinned(record: Record, limit: int) -> Record:
     keep = change.copy()
     keep[::every] = keep[-1] = True
     note = f"of {n} samples each {every}th is used, and all at which u changes"
-    return replace(
-        record, t=record.t[keep], u=record.u[keep], y=record.y[keep], notes=(*record.notes, note)
-    )
+    return replace(record, t=record.t[keep], u=record.u[keep], y=record.y[keep], notes=(*record.notes, note))
 
 
 def input_changes(record: Record) -> npt.NDArray[np.bool_]:

@@ -178,7 +178,8 @@ def step_data(record: Record, choices: Choices | None = None) -> StepData:
     """Find the step and its levels, and smooth the output after it.
 
     y0 is the mean up to the step (the last fifth of the record's rest, at most), y_final the mean of the last tenth
-    after it. The smoothing window follows the noise: none where there is none, up to half of the time from 10 % to 63 % and more with much of it.
+    after it. The smoothing window follows the noise: none where there is none, with 2 % of it half of the time from
+    10 % to 63 %.
 
     Parameters
     ----------
