@@ -97,7 +97,7 @@ def linear_relay(plant: TransferFunction, relay: Relay, periods: int = 12) -> Re
     at, seen, out = 0.0, 0, 1
     pending: list[tuple[float, int]] = [(plant.theta, 1)]
     t, u, y, dy, switches = [0.0], [float(relay.amplitude)], [0.0], [0.0], [0.0]
-    reason, first = None, 0.0
+    reason, largest, held_within = None, 0.0, np.inf
     while not _settled(switches, periods) and len(t) < _MOST_STEPS:
         dt, arrives = h, bool(pending) and pending[0][0] <= at + h
         if arrives:
@@ -121,9 +121,10 @@ def linear_relay(plant: TransferFunction, relay: Relay, periods: int = 12) -> Re
             u.append(out * relay.amplitude)
             y.append(float(pieces[seen].row @ x))
             dy.append(float(pieces[seen].slope @ x))
-            if len(switches) < 4:
-                first = max(first, abs(y[-1]))
-            elif not abs(y[-1]) < _RUNAWAY * first:
+            if at == switches[-1]:
+                held_within = largest
+            largest = max(largest, abs(y[-1]))
+            if len(switches) > 2 and not abs(y[-1]) < _RUNAWAY * held_within:
                 reason = "the output runs away: a relay of this size does not hold the plant"
                 break
         else:
