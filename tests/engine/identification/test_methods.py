@@ -1,5 +1,7 @@
 """Each method on a first-order response written in closed form, and on data that it must refuse or warn of."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -78,7 +80,7 @@ def test_any_input_sampled_at_any_times():
 
         x, y = np.zeros(2), np.zeros(60)
         cuts = np.unique(np.concatenate([t, t + 0.7]))
-        for a, b in zip(cuts[:-1], cuts[1:], strict=True):
+        for a, b in pairwise(cuts):
             run = solve_ivp(f, (a, np.nextafter(b, a)), x, rtol=1e-10, atol=1e-12)
             x = run.y[:, -1]
             y[np.isclose(t, b, rtol=0, atol=1e-12)] = x[0]
