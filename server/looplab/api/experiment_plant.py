@@ -10,7 +10,7 @@ from looplab.api.simulations import SimulationRequest, Values, open_loop_setting
 from looplab.engine.errors import InvalidInput
 from looplab.engine.systems import TransferFunction
 from looplab.jobs.experiments import PlantPoint
-from looplab.plants import UnknownPlant, load_plant
+from looplab.plants import load_plant
 from looplab.schemas import Model, System, located
 
 Name = Annotated[str, Field(max_length=32)]
@@ -30,11 +30,8 @@ class LibraryPlant(Model):
 
     def to_point(self) -> PlantPoint:
         """The same as a worker takes it; raises EngineError naming the field."""
-        try:
-            document = load_plant(self.id).document
-        except UnknownPlant as error:
-            raise InvalidInput(error.message, field="plant.id", hint=error.hint) from None
         with located("plant"):
+            document = load_plant(self.id).document
             settings = open_loop_settings(
                 SimulationRequest(
                     horizon=1.0,

@@ -180,8 +180,12 @@ def identify_model(request: Annotated[IdentifyRequest, Body(openapi_examples=EXA
     record, read = _record(request)
     choices = Choices(**request.step.model_dump())
     unknowns = Unknowns(request.free_start, request.drift)
-    with located("step"):
+    try:
         chosen = _answer(record, request.method, choices, unknowns)
+    except EngineError as error:
+        place = "step" if error.field in StepChoices.model_fields else "csv" if request.data is None else "data"
+        error.field = f"{place}.{error.field}" if error.field else place
+        raise
     methods = None
     if request.compare:
         methods = []
