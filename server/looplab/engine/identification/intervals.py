@@ -50,7 +50,8 @@ def confidence_intervals(
     size = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-300)
     _, s, Vt = np.linalg.svd(jacobian / size, full_matrices=False)
     # A direction that the data do not see has no end: its width overflows to a very wide interval.
-    spread = np.linalg.norm(Vt.T / np.maximum(s, 1e-15), axis=1) / size
+    with np.errstate(over="ignore"):
+        spread = np.linalg.norm(Vt.T / np.maximum(s, 1e-15), axis=1) / size
     sigma = float(np.sqrt(residual @ residual / (n - p)))
     factor = float(stdtrit(n - p, 0.5 + 0.5 * LEVEL)) * sigma
     half = [factor * float(spread[i]) * abs(float(m)) for i, m in zip(which, scale, strict=True)]

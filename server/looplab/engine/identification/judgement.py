@@ -14,7 +14,7 @@ from looplab.engine.systems.polynomial import FloatArray
 _SMALLEST_RATIO = 10.0
 _WIDE = 0.5
 _FLAT_SAMPLES = 5
-_CORNER = 0.02
+_CORNER = 0.2
 
 
 def fit_percent(y: FloatArray, y_hat: FloatArray) -> float | None:
@@ -49,7 +49,8 @@ def warnings(record: Record, fitted: Fitted, residuals: FloatArray) -> tuple[str
         moved = float(np.ptp(y))
     if sigma * _SMALLEST_RATIO > moved:
         out.append(
-            f"what the input moves is only {moved / sigma:.1f} times the residuals: a larger step, or less noise, is needed"
+            f"what the input moves is only {moved / sigma:.1f} times the residuals: "
+            "a larger step, or less noise, is needed"
         )
     out += _length(record, fitted)
     if _runs_flat(y):
@@ -96,7 +97,7 @@ def _length(record: Record, fitted: Fitted) -> list[str]:
 
 def _runs_flat(y: FloatArray) -> bool:
     """Whether y stays exactly at its highest or lowest value, and got there with a corner."""
-    span = float(np.ptp(y))
+    fastest = float(np.abs(np.diff(y)).max())
     for edge in (float(y.max()), float(y.min())):
         at = y == edge
         run = best = start = 0
@@ -106,7 +107,7 @@ def _runs_flat(y: FloatArray) -> bool:
                 best, start = run, k - run + 1
         if best >= max(_FLAT_SAMPLES, math.ceil(0.05 * y.size)) and start > 1:
             approach = abs(float(y[start] - y[start - 1])), abs(float(y[start - 1] - y[start - 2]))
-            if min(approach[1], approach[0] + approach[1]) > _CORNER * span:
+            if min(approach[1], approach[0] + approach[1]) > _CORNER * fastest:
                 return True
     return False
 

@@ -1,4 +1,4 @@
-"""Low-order models by least squares: the linear parameters in closed form, the others by search (variable projection)."""
+"""Low-order models by least squares: linear parameters in closed form, the others by search (variable projection)."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class _Problem:
     def linear(self, v: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Best linear parameters and the residual, for given others."""
         columns = self.columns(v)
-        c = np.linalg.lstsq(columns, self.y, rcond=None)[0]
+        c = np.asarray(np.linalg.lstsq(columns, self.y, rcond=None)[0], dtype=float)
         return c, self.y - columns @ c
 
     def residual(self, v: FloatArray) -> FloatArray:

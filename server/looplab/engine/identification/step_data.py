@@ -178,7 +178,8 @@ def step_data(record: Record, choices: Choices | None = None) -> StepData:
     """Find the step and its levels, and smooth the output after it.
 
     y0 is the mean up to the step (the last fifth of the record's rest, at most), y_final the mean of the last tenth
-    after it. The smoothing window follows the noise: none where there is none, up to a third of the time to 63 %.
+    after it. The smoothing window follows the noise: none where there is none, with 2 % of it half of the time from
+    10 % to 63 %.
 
     Parameters
     ----------
@@ -227,18 +228,21 @@ def step_data(record: Record, choices: Choices | None = None) -> StepData:
             notes.append("the record is too short: the output is still moving at its end, so K and tau are uncertain")
     window = choices.window
     if window is None:
-        window = _window(t, raw, y0, change, sigma, t_step)
+        window = _window(t, raw, y0, change, sigma)
     y, dy = smoothed(t, raw, window)
     step = float(np.mean(record.u[k:])) - (float(np.mean(record.u[:k])) if k else record.u_before)
     return StepData(t, y, dy, raw, t_step, step, y0, y_final, window, tuple(notes))
 
 
-def _window(t: FloatArray, y: FloatArray, y0: float, change: float, sigma: float, t_step: float) -> float:
+def _window(t: FloatArray, y: FloatArray, y0: float, change: float, sigma: float) -> float:
     relative = sigma / abs(change)
     if relative < 1e-3:
         return 0.0
-    past = (y - y0) / change >= 0.632
-    # With noise a sample may pass early: half of a run of five must.
-    runs = np.convolve(past, np.ones(_FEWEST), "valid") > _FEWEST / 2
-    reached = float(t[int(runs.argmax())] - t_step) if runs.any() else float(t[-1] - t_step)
-    return reached * min(0.33, 0.33 * math.sqrt(relative / 0.02))
+    rise = _reached(t, (y - y0) / change, 0.632) - _reached(t, (y - y0) / change, 0.1)
+    return max(rise, 0.0) * min(0.5, 0.5 * math.sqrt(relative / 0.02))
+
+
+def _reached(t: FloatArray, z: FloatArray, level: float) -> float:
+    """About when a noisy curve passes a level: most of five samples in a row are beyond it."""
+    runs = np.convolve(z >= level, np.ones(_FEWEST), "valid") > _FEWEST / 2
+    return float(t[int(runs.argmax()) + _FEWEST // 2]) if runs.any() else float(t[-1])

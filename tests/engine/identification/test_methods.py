@@ -1,0 +1,179 @@
+"""Each method on a first-order response written in closed form, and on data that it must refuse or warn of."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from looplab.engine.errors import InvalidInput, RuleNotApplicable
+from looplab.engine.identification.exact_response import model_response
+from looplab.engine.identification.identify import METHODS, identify
+from looplab.engine.identification.least_squares import Unknowns, least_squares
+from looplab.engine.identification.record import make_record
+from looplab.engine.identification.step_data import Choices
+from looplab.engine.systems import SOPDT
+
+K, TAU, Y0 = -1.7, 1.0, 3.5
+# What each method promises for tau, theta (in tau) and K on clean data with 500 samples over theta + 12 tau.
+ACCURACY = {
+    "tangent": 0.06,
+    "tangent_63": 0.02,
+    "two_point": 0.01,
+    "sundaresan_krishnaswamy": 0.02,
+    "area": 0.01,
+    "least_squares": 1e-6,
+}
+
+
+def step_record(theta, n=500, noise=0.0, seed=0, length=12.0):
+    t = np.linspace(10.0, 11.0 + theta + length * TAU, n)
+    t_step = t[np.searchsorted(t, 11.0)]
+    u = np.where(t >= t_step, 2.0, 1.0)
+    y = Y0 - K * np.expm1(-np.maximum(t - t_step - theta, 0.0) / TAU)
+    return make_record(t, u, y + noise * abs(K) * np.random.default_rng(seed).standard_normal(n))
+
+
+@pytest.mark.parametrize("method", ACCURACY)
+@pytest.mark.parametrize("theta", [0.05, 0.2, 1.0, 5.0])
+def test_clean_data_give_the_model_back(theta, method):
+    found = identify(step_record(theta), method)
+    model, within = found.fitted.model, ACCURACY[method]
+    assert model.K == pytest.approx(K, rel=max(1e-3 * (within > 1e-6), 1e-6))
+    assert model.tau == pytest.approx(TAU, rel=within)
+    # The published 1.3 t1 - 0.29 t2 is off by 1.2 % of the dead time itself.
+    assert model.theta == pytest.approx(theta, abs=within * (TAU + theta))
+    assert found.fit_pct > 90 if within > 1e-6 else found.fit_pct > 99.9999
+
+
+@pytest.mark.slow
+def test_intervals_hold_the_truth_in_nine_runs_of_ten():
+    inside, runs = {"K": 0, "tau": 0, "theta": 0}, 0
+    for theta in (0.05, 0.3, 1.0, 5.0):
+        for seed in range(50):
+            found = least_squares(step_record(theta, 60, 0.02, seed, 6.0), "FOPDT")
+            runs += 1
+            for name, true in (("K", K), ("tau", TAU), ("theta", theta)):
+                low, high = found.intervals[name]
+                inside[name] += low <= true <= high
+    assert runs == 200
+    assert min(inside.values()) >= 0.9 * runs, inside
+
+
+def test_any_input_sampled_at_any_times():
+    """Against a solver of the differential equation, with the input delayed by hand."""
+    from scipy.integrate import solve_ivp
+
+    rng = np.random.default_rng(5)
+    t = np.sort(rng.uniform(3.0, 23.0, 60))
+    u = np.cumsum(rng.standard_normal(60))
+    model = SOPDT(2.0, 1.3, 0.4, 0.7)
+    for hold in ("zero", "linear"):
+        record = make_record(t, u, t, hold)
+
+        def course(s, hold=hold):
+            if hold == "linear":
+                return np.interp(s, t, u)
+            return u[max(int(np.searchsorted(t, s, side="right")) - 1, 0)]
+
+        def f(s, x, course=course):
+            return [x[1], (2.0 * (course(s - 0.7) - u[0]) - 2 * 0.4 * 1.3 * x[1] - x[0]) / 1.3**2]
+
+        x, y = np.zeros(2), np.zeros(60)
+        cuts = np.unique(np.concatenate([t, t + 0.7]))
+        for a, b in pairwise(cuts):
+            run = solve_ivp(f, (a, np.nextafter(b, a)), x, rtol=1e-10, atol=1e-12)
+            x = run.y[:, -1]
+            y[np.isclose(t, b, rtol=0, atol=1e-12)] = x[0]
+        assert model_response(model, record) == pytest.approx(y, abs=1e-6)
+
+
+@pytest.mark.parametrize("zeta", [0.2, 1.0, 2.5])
+def test_second_order_with_drift_from_another_start(zeta):
+    rng = np.random.default_rng(2)
+    t = np.sort(rng.uniform(0.0, 25.0, 150))
+    u = np.where((t > 2) & (t < 9), 1.0, 0.0) + np.where(t > 14, -2.0, 0.0)
+    plain = make_record(t, u, t)
+    y = 4.0 + 0.03 * (t - t[0]) + model_response(SOPDT(2.0, 1.3, zeta, 0.7), plain)
+    found = least_squares(make_record(t, u, y), "SOPDT", Unknowns(free_start=False, drift=True))
+    assert vars(found.model) == pytest.approx({"K": 2.0, "tau": 1.3, "zeta": zeta, "theta": 0.7}, rel=1e-6)
+    assert found.estimated["drift"] == pytest.approx(0.03, rel=1e-6)
+
+
+def test_a_start_away_from_rest():
+    t = np.linspace(0.0, 12.0, 121)
+    u = np.where(t >= 3.0, 1.0, 0.0)
+    y = 1.0 + 2.0 * np.exp(-t / 1.5) - 3.0 * np.expm1(-np.maximum(t - t[u > 0][0] - 0.4, 0.0) / 1.5)
+    found = least_squares(make_record(t, u, y), "FOPDT", Unknowns(free_start=True))
+    assert vars(found.model) == pytest.approx({"K": 3.0, "tau": 1.5, "theta": 0.4}, rel=1e-6)
+
+
+def test_an_integrating_plant():
+    t = np.linspace(0.0, 20.0, 101)
+    u = np.where((t >= 2) & (t < 8), 1.0, 0.0)
+    at, off = t[u > 0][0], t[(t >= 8)][0]
+    y = 5.0 + 0.4 * (np.clip(t - 1.5, at, off) - at)
+    found = identify(make_record(t, u, y), "least_squares_ipdt")
+    assert (found.fitted.model.K, found.fitted.model.theta) == pytest.approx((0.4, 1.5), rel=1e-6)
+
+
+def test_a_tangent_drawn_by_hand():
+    choices = Choices(y0=0.0, y_final=10.0, t_inflection=13.0, y_inflection=2.0, slope=-2.0)
+    with pytest.raises(InvalidInput, match="the way that the output goes"):
+        identify(step_record(1.0), "tangent", choices)
+    found = identify(step_record(1.0), "tangent", Choices(0.0, 10.0, None, 13.0, 2.0, 2.0)).fitted
+    # 2 = 2 (t - t1): t1 = 12, t2 = 17, whatever the data.
+    assert (found.construction["t1"], found.construction["t2"], found.model.tau) == pytest.approx((12.0, 17.0, 5.0))
+
+
+def test_what_is_no_step_is_refused_by_those_that_need_one():
+    t = np.linspace(0.0, 20.0, 100)
+    record = make_record(t, np.sin(t), np.sin(t - 1.0))
+    for name, method in METHODS.items():
+        if method.needs_step:
+            with pytest.raises(RuleNotApplicable, match="not one step"):
+                identify(record, name)
+    assert identify(record, "least_squares").fit_pct > 80
+
+
+def warned(record, method="least_squares"):
+    return " | ".join(identify(record, method).warnings)
+
+
+def test_warnings():
+    assert warned(step_record(1.0)) == ""
+    assert "larger step" in warned(step_record(1.0, 200, noise=0.3))
+    assert "too short" in warned(step_record(1.0, 100, length=1.0))
+    assert "too short" in warned(step_record(1.0, 100, length=1.0), "two_point")
+    record = step_record(1.0)
+    clipped = make_record(record.t, record.u, np.maximum(record.y, Y0 + 0.6 * K))
+    assert "saturation" in warned(clipped)
+    slow = make_record(record.t, record.u, Y0 + model_response(SOPDT(1.0, 1.5, 0.3, 1.0), record))
+    assert "follow one another" in warned(slow)
+
+
+def test_records():
+    t = list(range(20))
+    u = [None, 0.0, *[1.0] * 18]
+    y = [0.0, 0.0, None, *[1.0] * 17]
+    record = make_record(t, u, y)
+    assert record.t.size == 19
+    assert len(record.notes) == 2
+    n = 12_001
+    many = make_record(np.arange(n) * 0.01, np.where(np.arange(n) > 6001, 1.0, 0.0), np.arange(n) * 1.0)
+    assert many.t.size <= 5000
+    assert "each 3th" in many.notes[0] and 60.02 in many.t
+    for bad, match in (
+        ({"t": [0, 1, 1, *range(3, 20)]}, "must increase"),
+        ({"u": [1.0] * 20}, "never changes"),
+        ({"u": [1.0] * 19}, "19 values"),
+        ({"y": [1.0] * 5 + [None] * 15}, "at least 8"),
+    ):
+        with pytest.raises(InvalidInput, match=match):
+            make_record(**{"t": t, "u": [0.0] * 5 + [1.0] * 15, "y": [1.0] * 20, **bad})
+
+
+def test_a_step_at_the_first_sample_needs_to_know_what_was_before():
+    t = np.linspace(0.0, 8.0, 80)
+    y = -2.0 * np.expm1(-np.maximum(t - 0.5, 0.0))
+    found = least_squares(make_record(t, [1.0] * 80, y, u_before=0.0), "FOPDT")
+    assert vars(found.model) == pytest.approx({"K": 2.0, "tau": 1.0, "theta": 0.5}, rel=1e-6)
