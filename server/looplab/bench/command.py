@@ -11,7 +11,7 @@ from pathlib import Path
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="looplab bench",
-        description="Times one gain move against python-control doing the same work, interleaved in one run, "
+        description="Times one gain move against python-control doing the same work, in turn by bursts, as a slider makes them, "
         "compares both with exact references, and weighs the server against a bare POST.",
     )
     parser.add_argument("--out", type=Path, metavar="FILE.json", help="write every figure to this file")

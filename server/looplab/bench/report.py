@@ -19,9 +19,9 @@ def _table(title: str, left: tuple[str, ...], right: tuple[str, ...], caption: s
 
 def _moves(rows: list[dict[str, Any]]) -> Table:
     notes = " ".join(f"{r['what'].capitalize()}: {r['note']}." for r in rows if r["note"])
-    caption = f"Processor time: medians in ms, their ratio, quartiles of the ratio of neighbouring calls. {notes}"
+    caption = f"Processor time: medians in ms, their ratio, quartiles of the ratio call by call. {notes}"
     columns = ("looplab", "control", "ratio", "quartiles", "goal")
-    table = _table("The same work by looplab and by python-control, in turn", ("",), columns, caption)
+    table = _table("The same work by looplab and by python-control, in turn by bursts of a slider", ("",), columns, caption)
     loop = None
     for r in rows:
         if r["loop"] != loop:
