@@ -21,7 +21,7 @@ def _moves(rows: list[dict[str, Any]]) -> Table:
     notes = " ".join(f"{r['what'].capitalize()}: {r['note']}." for r in rows if r["note"])
     caption = f"Processor time: medians in ms, their ratio, quartiles of the ratio call by call. {notes}"
     columns = ("looplab", "control", "ratio", "quartiles", "goal")
-    table = _table("The same work by looplab and by python-control, in turn by bursts of a slider", ("",), columns, caption)
+    table = _table("The same work by looplab and by python-control, burst by burst", ("",), columns, caption)
     loop = None
     for r in rows:
         if r["loop"] != loop:
