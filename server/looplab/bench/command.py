@@ -11,8 +11,8 @@ from pathlib import Path
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="looplab bench",
-        description="Times one gain move against python-control doing the same work, interleaved in one run, "
-        "compares both with exact references, and weighs the server against a bare POST.",
+        description="Times one gain move against python-control doing the same work, in turn by bursts, "
+        "as a slider makes them, compares both with exact references, and weighs the server against a bare POST.",
     )
     parser.add_argument("--out", type=Path, metavar="FILE.json", help="write every figure to this file")
     parser.add_argument("--quick", action="store_true", help="few repetitions: a look, not a measurement")

@@ -22,7 +22,7 @@ def _table(title: str, left: tuple[str, ...], right: tuple[str, ...], caption: s
 
 def _moves(rows: list[dict[str, Any]], title: str, peer: str, note: str = "") -> Table:
     notes = " ".join(f"{r['what'].capitalize()}: {r['note']}." for r in rows if r["note"])
-    caption = f"Processor time: medians in ms, their ratio, quartiles of the ratio of neighbouring calls. {notes}{note}"
+    caption = f"Processor time: medians in ms, their ratio, quartiles of the ratio call by call. {notes}{note}"
     columns = ("looplab", peer, "ratio", "quartiles", "goal")
     table = _table(title, ("",), columns, caption)
     loop = None
@@ -95,7 +95,7 @@ def show(console: Console, results: dict[str, Any]) -> None:
     threads = ", ".join(sorted(set(machine["blas_threads"].values())))
     console.print(f"Python {machine['python']}, {machine['system']}, {machine['cores']} cores, BLAS threads {threads}")
     console.print(f"{packages}\n")
-    work = _moves(results["moves"], "The same work by looplab and by python-control, in turn", "control")
+    work = _moves(results["moves"], "The same work by looplab and by python-control, burst by burst", "control")
     column_title = "A distillation column of 44 states, 500 points"
     simulated = _moves(results["column"], column_title, "other", f"{NOTE.capitalize()}.")
     for table in (work, simulated, _control(results["control"]), _accuracy(results["accuracy"])):

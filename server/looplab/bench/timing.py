@@ -1,4 +1,9 @@
-"""Two ways of doing one thing, timed in turn."""
+"""Two ways of doing one thing, timed in turn by bursts.
+
+A slider that is dragged makes one move after another, not one now and then: a few moves of one side, then as many of
+the other, so that each finds the processor's caches as its own moves leave them. What the machine does meanwhile falls
+on both.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +14,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 WARM_UP = 3
+BURST = 8
 
 
 def _spread(seconds: list[float]) -> dict[str, float]:
@@ -20,16 +26,16 @@ def _spread(seconds: list[float]) -> dict[str, float]:
 def interleave(
     ours: Callable[[float], Any], peer: Callable[[float], Any], values: Sequence[float], tick: Callable[[], None]
 ) -> dict[str, Any]:
-    """Time ours, peer, ours, peer ... over the values, each after three untimed calls.
+    """Time eight calls of ours, the same eight of the peer, and so on over the values, after three untimed calls each.
 
-    Processor time of this process is what is compared: both run on one thread, and other work on the machine does not
-    enter it. Wall time is kept beside it.
+    Every call is timed on its own. Processor time of this process is what is compared: both run on one thread, and
+    other work on the machine does not enter it. Wall time is kept beside it.
 
     Returns
     -------
     dict
-        Medians and quartiles of processor time [ms], their ratio peer/ours, the quartiles of the ratio of neighbours,
-        medians of wall time [ms].
+        Medians and quartiles of processor time [ms], their ratio peer/ours, the quartiles of the ratio of the
+        two calls for one value, medians of wall time [ms].
     """
     for value in values[:WARM_UP]:
         ours(value), peer(value)
@@ -37,13 +43,16 @@ def interleave(
     spent: dict[str, list[float]] = {"ours": [], "peer": []}
     wall: dict[str, list[float]] = {"ours": [], "peer": []}
     gc.collect()
-    for value in rest:
+    for start in range(0, len(rest), BURST):
+        burst = rest[start : start + BURST]
         for name, work in (("ours", ours), ("peer", peer)):
-            t, c = time.perf_counter(), time.process_time()
-            work(value)
-            spent[name].append(time.process_time() - c)
-            wall[name].append(time.perf_counter() - t)
-        tick()
+            for value in burst:
+                t, c = time.perf_counter(), time.process_time()
+                work(value)
+                spent[name].append(time.process_time() - c)
+                wall[name].append(time.perf_counter() - t)
+        for _ in burst:
+            tick()
     pairs = [p / o for o, p in zip(spent["ours"], spent["peer"], strict=True)]
     low, _, high = statistics.quantiles(pairs, n=4, method="inclusive")
     ours_ms, peer_ms = _spread(spent["ours"]), _spread(spent["peer"])

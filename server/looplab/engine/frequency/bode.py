@@ -13,8 +13,6 @@ from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
 
-DECIBELS = float(20.0 / np.log(10.0))
-
 
 @dataclass(frozen=True)
 class Bode:
@@ -47,4 +45,4 @@ def bode(system: TransferFunction, omega: FloatArray | None = None) -> Bode:
     """
     w = default_grid(system) if omega is None else np.asarray(omega, dtype=float)
     on_grid = sampled_at(system, w)
-    return Bode(w, on_grid.log_magnitude * DECIBELS, np.degrees(on_grid.phase))
+    return Bode(w, on_grid.mag_dB, on_grid.curve.phase_deg)

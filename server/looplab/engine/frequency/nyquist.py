@@ -10,9 +10,11 @@ import numpy.typing as npt
 
 from looplab.engine.frequency.crossings import OFTEN, crossings, fastest_root
 from looplab.engine.frequency.response import AXIS_GAP
+from looplab.engine.frequency.sampled import UnitCurve
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 
 # Closer to -1 than this the curve passes through it.
 ON_CURVE = 1e-9
@@ -163,39 +165,51 @@ def nyquist_curve(L: TransferFunction, step: float = 0.03) -> NyquistCurve:
     .. [1] K. J. Astrom, R. M. Murray, Feedback Systems, 2nd ed., Princeton 2021, sec. 10.2.
     """
     grid = crossings(L).grid
-    omega, value, phase = grid.omega, grid.value, grid.phase
-    size = np.abs(value)
-    drawn = size < LARGEST_DRAWN
+    omega, curve, gain = grid.omega, grid.curve, abs(grid.gain)
+    if not gain:
+        return NyquistCurve(omega, np.zeros(omega.size), np.zeros(omega.size))
+    drawn = curve.size < LARGEST_DRAWN / gain
     if L.theta and L.relative_degree == 0:
         drawn &= omega <= max(30.0 * fastest_root(L.unit), 4.0 * np.pi / L.theta)
-    if not drawn.all():
-        omega, value, phase, size = omega[drawn], value[drawn], phase[drawn], size[drawn]
+    if drawn.all():
+        value = curve.value
+        near, chord = _chords_of(curve)
+    else:
+        omega, value = omega[drawn], curve.value[drawn]
+        near, chord = _chords(value, curve.size[drawn], curve.phase[drawn], L.theta)
     if not omega.size:
         return NyquistCurve(omega, value.real.copy(), value.imag.copy())
-    near = np.minimum(size[1:], size[:-1])
-    length = np.abs(value[1:] - value[:-1]) / (step * np.sqrt((near + SMALLEST_SEEN) * (1.0 + near)))
+    near = gain * near
+    length = chord * (gain / step) / np.sqrt((near + SMALLEST_SEEN) * (1.0 + near))
     length[near > OUT_OF_PICTURE] *= 0.1
-    if L.theta:
-        length /= np.minimum(1.0 + np.abs(phase[1:] - phase[0]) / (8.0 * np.pi), 4.0)
     # A point stays where the length from the start reaches another whole number, and beside a gap to be filled.
-    whole = np.floor(np.cumsum(np.minimum(length, 1.0)))
-    keep = np.ones(omega.size, dtype=bool)
-    keep[1:-1] = (whole[1:] > whole[:-1]) | (length[1:] > 1.0)
-    between = _between(omega, length)
-    if not between.size:
-        omega, value = omega[keep], value[keep]
-    else:
-        omega = np.concatenate([omega[keep], between])
-        order = omega.argsort()
-        omega, value = omega[order], np.concatenate([value[keep], L.response(between)])[order]
-    return NyquistCurve(omega, value.real.copy(), value.imag.copy())
+    whole = np.floor(np.minimum(length, 1.0).cumsum())
+    kept = np.zeros(omega.size, dtype=bool)
+    kept[0] = kept[-1] = True
+    kept[1:-1] = (whole[1:] > whole[:-1]) | (length[1:] > 1.0)
+    at = kept.nonzero()[0]
+    # Parts that each interval between the points that stay is cut into, evenly over ln omega.
+    place = np.zeros(at.size, dtype=int)
+    np.ceil(length[at[:-1]].clip(1.0, MOST_PARTS)).cumsum(out=place[1:], dtype=int)
+    number = np.arange(place[-1] + 1)
+    new = np.ones(number.size, dtype=bool)
+    new[place] = False
+    out, values = np.empty(number.size), np.empty(number.size, dtype=complex)
+    out[place], values[place] = omega[at], value[at]
+    between = np.exp(np.interp(new.nonzero()[0], place, np.log(omega[at])))
+    out[new], values[new] = between, L.unit.response(between)
+    values *= gain
+    return NyquistCurve(out, values.real.copy(), values.imag.copy())
 
 
-def _between(omega: FloatArray, length: FloatArray) -> FloatArray:
-    """Frequencies that cut each interval longer than 1 into parts that are not."""
-    gaps = np.flatnonzero(length > 1.0)
-    parts = np.minimum(np.ceil(length[gaps]), MOST_PARTS).astype(int)
-    extra = parts - 1
-    left = np.repeat(gaps, extra)
-    part = 1 + np.arange(left.size) - np.repeat(np.cumsum(extra) - extra, extra)
-    return np.asarray(omega[left] * (omega[left + 1] / omega[left]) ** (part / np.repeat(parts, extra)))
+def _chords(value: ComplexArray, size: FloatArray, phase: FloatArray, theta: float) -> tuple[FloatArray, FloatArray]:
+    """Of each step along a curve the smaller |L| of its ends and its length, less where the dead time has turned."""
+    chord = np.abs(value[1:] - value[:-1])
+    if theta:
+        chord /= np.minimum(1.0 + np.abs(phase[1:] - phase[0]) / (8.0 * np.pi), 4.0)
+    return np.minimum(size[1:], size[:-1]), chord
+
+
+@lru_cache(maxsize=64)
+def _chords_of(curve: UnitCurve) -> tuple[FloatArray, FloatArray]:
+    return _chords(curve.value, curve.size, curve.phase, curve.unit.theta)

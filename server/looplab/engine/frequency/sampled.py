@@ -19,6 +19,7 @@ Array = TypeVar("Array", FloatArray, ComplexArray)
 
 
 MOST_EXTREMA = 200
+DECIBELS = 20.0 / log(10.0)
 
 
 def _read_only(array: Array) -> Array:
@@ -35,8 +36,10 @@ class UnitCurve:
         The grid [rad/time].
     log_magnitude, phase : ndarray
         ln \\|G\\| and the phase, anchored at omega -> 0 [rad].
-    value : ndarray of complex
-        G(j omega).
+    decibels, phase_deg : ndarray
+        The same as Bode plots have them [dB, deg].
+    value, size : ndarray
+        G(j omega) and its magnitude.
     rate : ndarray of complex
         omega G'(j omega)/G(j omega): its real part is the slope of the phase over ln omega, its imaginary part the
         negative slope of ln \\|G\\|.
@@ -61,6 +64,26 @@ class UnitCurve:
         return _read_only(self.unit.response(self.omega))
 
     @cached_property
+    def is_finite(self) -> bool:
+        """Whether no point lies on a pole."""
+        return bool(np.isfinite(self.value).all())
+
+    @cached_property
+    def size(self) -> FloatArray:
+        """|G|."""
+        return _read_only(np.abs(self.value))
+
+    @cached_property
+    def decibels(self) -> FloatArray:
+        """20 log10 |G|."""
+        return _read_only(self.log_magnitude * DECIBELS)
+
+    @cached_property
+    def phase_deg(self) -> FloatArray:
+        """Phase [deg]."""
+        return _read_only(np.degrees(self.phase))
+
+    @cached_property
     def rate(self) -> ComplexArray:
         """omega G'/G at j omega."""
         return _read_only(self.omega * self.unit.log_derivative((1j * self.omega).astype(complex)))
@@ -83,9 +106,16 @@ class Sampled:
         """ln|G|, shape (n,)."""
         return self.curve.log_magnitude + self.shift if self.gain else np.full(self.omega.shape, -inf)
 
+    @property
+    def mag_dB(self) -> FloatArray:
+        """20 log10 |G|, shape (n,)."""
+        return self.curve.decibels + DECIBELS * self.shift if self.gain else np.full(self.omega.shape, -inf)
+
     @cached_property
     def value(self) -> ComplexArray:
         """G(j omega), shape (n,)."""
+        if self.curve.is_finite:
+            return self.curve.value * abs(self.gain)
         with np.errstate(invalid="ignore"):  # infinite on a pole of the axis
             return self.curve.value * abs(self.gain)
 

@@ -58,6 +58,20 @@ class ScalarLoop:
             slope += sense * (a / size) / size
         return out, slope * omega
 
+    def value_and_rate(self, s: complex, gain: float) -> tuple[complex, complex]:
+        """L and q = L'/L at s."""
+        value = self.sign * gain * cmath.exp(-self.theta * s)
+        q = complex(-self.theta)
+        for z, p in zip_longest(self.zeros, self.poles):
+            if z is not None:
+                value *= s - z
+                q += 1.0 / ((s - z) or TINY)
+            if p is not None:
+                part = 1.0 / ((s - p) or TINY)
+                value *= part
+                q -= part
+        return value, q
+
     def value_and_rates(self, s: complex, gain: float) -> tuple[complex, complex, complex]:
         """L, q = L'/L and q' at s."""
         value = self.sign * gain * cmath.exp(-self.theta * s)
@@ -90,7 +104,7 @@ class ScalarLoop:
 
     def peak_size(self, x: float, gain: float, part: str) -> float:
         """|S| or |T| for L of the given gain."""
-        value, _, _ = self.value_and_rates(1j * math.exp(x), gain)
+        value, _ = self.value_and_rate(1j * math.exp(x), gain)
         return abs((1.0 if part == "S" else value) / ((1.0 + value) or TINY))
 
 

@@ -30,6 +30,8 @@ FloatArray = npt.NDArray[np.float64]
 
 MAX_PIECES = 60_000
 LARGEST_STATE = 1e14
+# States that marching finds at once.
+BLOCK = 8
 # Above this size marching is cheaper than powers of the companion matrix.
 LARGEST_COMPANION = 250
 
@@ -102,13 +104,26 @@ def _march(F: FloatArray, x0: FloatArray, lag: int, count: int) -> FloatArray:
     x[before] = x0
     flat = np.ascontiguousarray(F[::-1].transpose(1, 0, 2).reshape(n, J * n))  # oldest first
     if lag == 1:
-        past = x.reshape(-1, x0.shape[1])
-        for k in range(before + 1, count + before):
-            np.dot(flat, past[(k - J) * n : k * n], out=x[k])
+        several = _several_pieces(flat, min(BLOCK, J, count))
+        states, stop = x.reshape(-1, x0.shape[1]), (count + before) * n
+        for k in range((before + 1) * n, stop, several.shape[0]):
+            rows = min(several.shape[0], stop - k)
+            np.dot(several[:rows], states[k - J * n : k], out=states[k : k + rows])
     else:
         for k in range(before + 1, count + before):
             x[k] = flat @ x[k - 1 - before : k : lag].reshape(J * n, -1)
     return x
+
+
+def _several_pieces(flat: FloatArray, count: int) -> FloatArray:
+    """The next ``count`` states from the past, shape (count*n, J*n), where ``flat`` (n, J*n) gives the next one."""
+    n, width = flat.shape
+    out = np.zeros((count * n, width))
+    for i in range(0, count * n, n):
+        # What is known of the past, and what the states before this one make of it.
+        out[i : i + n, i:] = flat[:, : width - i]
+        out[i : i + n] += flat[:, width - i :] @ out[:i]
+    return out
 
 
 def _leap(F: FloatArray, x0: FloatArray, every: int, count: int) -> FloatArray:
@@ -172,7 +187,8 @@ def delayed_response(
     -------
     grid : DelayGrid
     out : ndarray, shape (grid.count, p, c)
-        Right-hand limits at the grid's times; NaN beyond the computed part of a growing neutral loop.
+        Right-hand limits at the grid's times; NaN beyond the computed part of a growing neutral loop. A view of an
+        array in which each output's samples follow one another.
 
     Raises
     ------
@@ -199,9 +215,9 @@ def delayed_response(
         steps = min(steps, int((2 + np.log(LARGEST_STATE) / np.log(neutral)) * steps_per_dead_time) + 1)
     states = _states(F, x0, grid, steps)
     J, q, p, n = H.shape
-    kernel = H.transpose(1, 2, 0, 3).reshape(q * p, J * n)
-    out = kernel @ states.transpose(1, 2, 0, 3).reshape(J * n, -1)
-    out = out.reshape(q, p, steps, -1).transpose(2, 0, 1, 3).reshape(steps * q, p, -1)
+    kernel = H.transpose(0, 3, 2, 1).reshape(J * n, p * q)
+    out = states.transpose(3, 0, 1, 2).reshape(-1, J * n) @ kernel
+    out = out.reshape(-1, steps, p, q).transpose(0, 2, 1, 3).reshape(-1, p, steps * q)
     if steps < whole:
-        out = np.concatenate([out, np.full(((whole - steps) * q, *out.shape[1:]), np.nan)])
-    return grid, out[: grid.count]
+        out = np.concatenate([out, np.full((*out.shape[:2], (whole - steps) * q), np.nan)], axis=2)
+    return grid, out[:, :, : grid.count].transpose(2, 1, 0)

@@ -112,8 +112,10 @@ def _judge(responses: Sequence[Response], setpoints: Sequence[float], stable: bo
         return [
             StepMetrics(reasons=dict.fromkeys(NUMBERS, "undefined: the closed loop is not stable")) for _ in responses
         ]
-    y, dy = ([getattr(r, name) for name in names for r in responses] for names in (("y", "u"), ("dy", "du")))
-    curves = HermiteCurves(responses[0].t, np.stack(y), np.stack(dy))
+    values = np.concatenate([*(r.y for r in responses), *(r.u for r in responses)])
+    slopes = np.concatenate([*(r.dy for r in responses), *(r.du for r in responses)])
+    t, rows = responses[0].t, 2 * len(responses)
+    curves = HermiteCurves(t, values.reshape(rows, -1), slopes.reshape(rows, -1))
     integrals = curves.absolute_integrals(setpoints)
     judged = []
     for row, (response, setpoint) in enumerate(zip(responses, setpoints, strict=True)):

@@ -7,7 +7,9 @@ than the coefficients, so s is kept short enough that it is not: see ``pieces_of
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from math import factorial
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +18,7 @@ from looplab.engine.errors import NoConvergence
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+Matrices = TypeVar("Matrices", FloatArray, ComplexArray)
 
 # z (k,) -> A(z) (k, n, n), C(z) (k, p, n)
 Symbol = Callable[[ComplexArray], tuple[ComplexArray, ComplexArray]]
@@ -32,17 +35,19 @@ LONGEST_PIECE = 256.0
 # A returning jump (neutral loop) shrinks by this factor per dead time on the circle chosen for it.
 NEUTRAL_DECAY = 0.983
 # 1/k! for k = 4 i + j
-_TAYLOR = np.array([[1.0 / factorial(4 * i + j) for j in range(4)] for i in range(4)], dtype=complex)
+_TAYLOR = np.array([[1.0 / factorial(4 * i + j) for j in range(4)] for i in range(4)])
+_COMPLEX_TAYLOR = _TAYLOR.astype(complex)
 
 
-def _taylor(matrices: ComplexArray) -> ComplexArray:
+def _taylor(matrices: Matrices) -> Matrices:
     """exp of matrices of norm <= 1/2: degree 15 in powers of the fourth power (Paterson-Stockmeyer), error < 1e-18."""
-    powers = np.empty((4, *matrices.shape), dtype=complex)
+    powers = np.empty((4, *matrices.shape), dtype=matrices.dtype)
     powers[0], powers[1] = np.eye(matrices.shape[-1]), matrices
     np.matmul(matrices, matrices, out=powers[2])
     np.matmul(powers[2], matrices, out=powers[3])
     a4 = powers[2] @ powers[2]
-    blocks = (_TAYLOR @ powers.reshape(4, -1)).reshape(powers.shape)
+    taylor = _COMPLEX_TAYLOR if np.iscomplexobj(powers) else _TAYLOR
+    blocks = (taylor @ powers.reshape(4, -1)).reshape(powers.shape)
     out = blocks[3]
     for block in (blocks[2], blocks[1], blocks[0]):
         out = a4 @ out
@@ -50,12 +55,12 @@ def _taylor(matrices: ComplexArray) -> ComplexArray:
     return out
 
 
-def _norm(matrices: ComplexArray) -> float:
+def _norm(matrices: Matrices) -> float:
     return float(np.abs(matrices).sum(axis=-1).max(initial=0.0))
 
 
-def expm_batch(matrices: ComplexArray) -> ComplexArray:
-    """exp of a stack of matrices, shape (k, n, n), by scaling, a Taylor polynomial and squaring."""
+def expm_batch(matrices: Matrices) -> Matrices:
+    """exp of matrices, shape (..., n, n), real or complex, by scaling, a Taylor polynomial and squaring."""
     norm = _norm(matrices)
     squarings = max(0, int(np.ceil(np.log2(norm))) + 1) if norm > 0.5 else 0
     out = _taylor(matrices / 2.0**squarings)
@@ -64,9 +69,12 @@ def expm_batch(matrices: ComplexArray) -> ComplexArray:
     return out
 
 
+@lru_cache(maxsize=64)
 def circle(nodes: int, radius: float) -> ComplexArray:
-    """The upper half of ``nodes`` points of a circle; a real series is known from it."""
-    return radius * np.exp(-2j * np.pi * np.arange(nodes // 2 + 1) / nodes)
+    """The upper half of ``nodes`` points of a circle, read-only; a real series is known from it."""
+    z: ComplexArray = radius * np.exp(-2j * np.pi * np.arange(nodes // 2 + 1) / nodes)
+    z.setflags(write=False)
+    return z
 
 
 def circle_radius(neutral: float) -> float:

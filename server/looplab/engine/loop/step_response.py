@@ -95,8 +95,10 @@ class LoopEquations:
         y = (z / (1.0 + self.DpDc * z))[:, None] * self.g
         u = self.u0 - self.Dc * y
         A = self.base + self.b_y[:, None] * y[:, None, :]
-        values = np.stack([y, u], axis=1)
-        return A, np.concatenate([values, values @ A], axis=1)
+        rows = np.empty((z.size, 4, self.g.size), dtype=complex)
+        rows[:, 0], rows[:, 1] = y, u
+        rows[:, 2:] = rows[:, :2] @ A
+        return A, rows
 
     @cached_property
     def without_shift(self) -> tuple[FloatArray, FloatArray]:
@@ -218,7 +220,10 @@ def closed_loop_step(loop: FeedbackLoop, horizon: float, points: int = 500) -> C
             grid, out = delayed_response(equations.at, equations.starts, theta, horizon, points, abs(equations.DpDc))
     t, why = grid.t, f"the response grows beyond {LARGEST_VALUE:g}: the loop is unstable"
     final_r, final_d = _final_values(loop)
-    setpoint, load = np.ascontiguousarray(out.transpose(2, 1, 0))
+    setpoint, load = out.transpose(2, 1, 0)
+    if np.abs(out[:, :2]).max() < LARGEST_VALUE:
+        both = (Response(t, y, u, dy, du, final) for (y, u, dy, du), final in ((setpoint, final_r), (load, final_d)))
+        return ClosedLoopStep(t, horizon, *both)
     return ClosedLoopStep(t, horizon, _cut(t, setpoint, final_r, why), _cut(t, load, final_d, why))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from operator import attrgetter
 
 import numpy as np
 import numpy.typing as npt
@@ -141,23 +142,24 @@ def verdict_from_poles(poles: ComplexArray, noun: str = "closed-loop pole", whol
     if not poles.size:
         return Verdict("stable", True, f"the {whole} has no dynamics: it answers at once", 0)
     # Eigenvalues of a cluster of m equal poles scatter by about eps^(1/m); a pole at the origin needs a scale.
-    scale = np.maximum(np.abs(poles), 1e-3 * np.abs(poles).max())
-    relative = poles.real / np.maximum(scale, 1e-300)
-    right = poles[relative > AXIS_TOLERANCE]
-    axis = poles[np.abs(relative) <= AXIS_TOLERANCE]
-    if right.size:
-        worst = right[np.argmax(right.real)]
-        many = f"{right.size} {noun}s lie" if right.size > 1 else f"a {noun} lies"
+    every = poles.tolist()
+    least = max(1e-3 * max(map(abs, every)), 1e-300)
+    by_size = [(p, AXIS_TOLERANCE * max(abs(p), least)) for p in every]
+    right = [p for p, near in by_size if p.real > near]
+    axis = [p for p, near in by_size if abs(p.real) <= near]
+    if right:
+        worst = max(right, key=attrgetter("real"))
+        many = f"{len(right)} {noun}s lie" if len(right) > 1 else f"a {noun} lies"
         return Verdict(
             "unstable",
             False,
             f"{many} in the right half-plane, at {_pole_text(worst)}: the response grows",
-            int(right.size),
+            len(right),
         )
-    if axis.size:
-        if any(np.count_nonzero(np.abs(axis - p) < 1e-6 * max(abs(p), 1e-6)) > 1 for p in axis):
+    if axis:
+        if any(sum(abs(other - p) < 1e-6 * max(abs(p), 1e-6) for other in axis) > 1 for p in axis):
             return Verdict("unstable", False, f"a repeated {noun} lies on the imaginary axis", 0)
-        at = axis[np.argmax(axis.imag)]
+        at = max(axis, key=attrgetter("imag"))
         what = (
             f"a {noun} lies at the origin"
             if abs(at) < 1e-12
@@ -167,8 +169,8 @@ def verdict_from_poles(poles: ComplexArray, noun: str = "closed-loop pole", whol
             )
         )
         return Verdict("marginal", False, what, 0)
-    slowest = poles[np.argmax(poles.real)]
-    many = f"all {poles.size} {noun}s lie" if poles.size > 1 else f"the {noun} lies"
+    slowest = max(every, key=attrgetter("real"))
+    many = f"all {len(every)} {noun}s lie" if len(every) > 1 else f"the {noun} lies"
     return Verdict("stable", True, f"{many} in the left half-plane; the rightmost at {_pole_text(slowest)}", 0)
 
 

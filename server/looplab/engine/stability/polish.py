@@ -13,17 +13,18 @@ from looplab.engine.systems.transfer_function import SMALL_ORDER, TransferFuncti
 
 ComplexArray = npt.NDArray[np.complex128]
 
-# Steps this small, relative to the root, are rounding.
-SETTLED = 1e-15
+# After a step this small, relative to the root, the next one would be rounding.
+FINAL = 1e-12
 EPSILON = float(np.finfo(float).eps)
 
 
 def _log_of_factors(away: ComplexArray, zeros: int) -> ComplexArray:
-    """ln of prod(s - z)/prod(s - p) up to turns; one logarithm where the products stay in double precision."""
-    if away.shape[-1] <= SMALL_ORDER:
-        return np.log(away[..., :zeros].prod(axis=-1) / away[..., zeros:].prod(axis=-1))
+    """ln of prod(s - z)/prod(s - p) up to turns; the roots lie along the first axis, zeros first."""
+    # One logarithm where the products stay in double precision.
+    if away.shape[0] <= SMALL_ORDER:
+        return np.log(away[:zeros].prod(axis=0) / away[zeros:].prod(axis=0))
     logs = np.log(away)
-    return np.asarray(logs[..., :zeros].sum(axis=-1) - logs[..., zeros:].sum(axis=-1))
+    return np.asarray(logs[:zeros].sum(axis=0) - logs[zeros:].sum(axis=0))
 
 
 def polish_closed_loop_poles(
@@ -48,27 +49,28 @@ def polish_closed_loop_poles(
         True where the residual \|1 + K L\| ended below 1e-8 (or what rounding of s allows) near the guess.
     """
     s = guess.astype(complex)
-    roots = np.concatenate([L.zeros, L.poles])
-    sign = np.ones(roots.size, dtype=complex)
-    sign[L.zeros.size :] = -1.0
+    roots = np.concatenate([L.zeros, L.poles]).reshape(-1, *(1,) * s.ndim)
+    zeros, near = L.zeros.size, 0.3 * np.abs(guess) + 1e-6
     with np.errstate(all="ignore"):
         offset = np.log(np.asarray(gain, dtype=float) * L.gain + 0j) - 1j * np.pi
         for left in range(steps, -1, -1):
-            away = s[..., None] - roots
-            miss = _log_of_factors(away, L.zeros.size) + (offset - L.theta * s)
+            away = s - roots
+            miss = _log_of_factors(away, zeros) + (offset - L.theta * s)
             miss.imag -= 2.0 * np.pi * np.round(miss.imag / (2.0 * np.pi))
-            slope = np.reciprocal(away) @ sign - L.theta
+            rates = np.reciprocal(away)
+            slope = rates[:zeros].sum(axis=0) - rates[zeros:].sum(axis=0) - L.theta
             if not left:
                 break
             step = miss / slope
             step[~np.isfinite(step)] = 0.0
             s = s - step
-            if not (np.abs(step) > SETTLED * np.abs(s)).any():
+            # A root that has left the neighbourhood of its guess is none of ours: it is not waited for.
+            if not ((np.abs(step) > FINAL * np.abs(s)) & (np.abs(s - guess) <= near)).any():
                 break
         # Next to an open-loop pole L cannot be known better than the rounding of s allows.
         knowable = 8.0 * EPSILON * np.abs(s * slope)
         good = np.abs(miss) < np.maximum(1e-8, np.minimum(knowable, 0.1))
-        good &= np.abs(s - guess) <= 0.3 * np.abs(guess) + 1e-6
+        good &= np.abs(s - guess) <= near
     return s, good
 
 
@@ -94,12 +96,15 @@ def polish_few(L: TransferFunction, guess: ComplexArray, steps: int = 2) -> Comp
             continue
         s, miss, rate = start, 1.0 + 0j, 0j
         for left in range(steps, -1, -1):
-            value, rate, _ = loop.value_and_rates(s, gain)
+            value, rate = loop.value_and_rate(s, gain)
             if not (isfinite(abs(value)) and value and rate):
                 break
             miss = cmath.log(-value)
             if left:
-                s -= miss / rate
+                step = miss / rate
+                s -= step
+                if abs(step) <= FINAL * abs(s):
+                    break
         # Next to an open-loop pole L cannot be known better than the rounding of s allows.
         knowable = 8.0 * EPSILON * abs(s * rate)
         good = abs(miss) < max(1e-8, min(knowable, 0.1)) and abs(s - start) <= 0.3 * abs(start) + 1e-6

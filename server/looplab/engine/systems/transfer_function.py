@@ -236,15 +236,15 @@ class TransferFunction:
     def _broadcast(self, s: ComplexArray) -> ComplexArray:
         """The same on arrays of roots at once, for orders that cannot overflow."""
         both = min(self.zeros.size, self.poles.size)
-        column = s[:, None]
+        zeros, poles = self.zeros[:, None], self.poles[:, None]
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             value = self.gain * np.exp(-self.theta * s) if self.theta else np.full(s.shape, self.gain, dtype=complex)
             if both:
-                value *= ((column - self.zeros[:both]) / (column - self.poles[:both])).prod(axis=1)
+                value *= ((s - zeros[:both]) / (s - poles[:both])).prod(axis=0)
             if self.zeros.size > both:
-                value *= (column - self.zeros[both:]).prod(axis=1)
+                value *= (s - zeros[both:]).prod(axis=0)
             if self.poles.size > both:
-                value /= (column - self.poles[both:]).prod(axis=1)
+                value /= (s - poles[both:]).prod(axis=0)
         return np.asarray(value)
 
     def response(self, omega: npt.ArrayLike) -> ComplexArray:
