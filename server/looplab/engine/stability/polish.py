@@ -13,8 +13,8 @@ from looplab.engine.systems.transfer_function import SMALL_ORDER, TransferFuncti
 
 ComplexArray = npt.NDArray[np.complex128]
 
-# Steps this small, relative to the root, are rounding.
-SETTLED = 1e-15
+# What one more step would leave of ln(-K L) is rounding.
+NEGLIGIBLE = 1e-15
 EPSILON = float(np.finfo(float).eps)
 
 
@@ -39,7 +39,7 @@ def polish_closed_loop_poles(
     gain : array_like
         K, broadcast against guess.
     steps : int
-        Newton steps.
+        Newton steps at most.
 
     Returns
     -------
@@ -51,6 +51,7 @@ def polish_closed_loop_poles(
     roots = np.concatenate([L.zeros, L.poles])
     sign = np.ones(roots.size, dtype=complex)
     sign[L.zeros.size :] = -1.0
+    settled, size = False, np.zeros(())
     with np.errstate(all="ignore"):
         offset = np.log(np.asarray(gain, dtype=float) * L.gain + 0j) - 1j * np.pi
         for left in range(steps, -1, -1):
@@ -58,13 +59,14 @@ def polish_closed_loop_poles(
             miss = _log_of_factors(away, L.zeros.size) + (offset - L.theta * s)
             miss.imag -= 2.0 * np.pi * np.round(miss.imag / (2.0 * np.pi))
             slope = np.reciprocal(away) @ sign - L.theta
-            if not left:
+            if not left or settled:
                 break
             step = miss / slope
             step[~np.isfinite(step)] = 0.0
             s = s - step
-            if not (np.abs(step) > SETTLED * np.abs(s)).any():
-                break
+            # Newton's misses shrink as their squares; steps of a few roundings of s lead nowhere.
+            last, size = size, np.abs(miss)
+            settled = not ((size**3 > NEGLIGIBLE * last**2) & (np.abs(step) > 4.0 * EPSILON * np.abs(s))).any()
         # Next to an open-loop pole L cannot be known better than the rounding of s allows.
         knowable = 8.0 * EPSILON * np.abs(s * slope)
         good = np.abs(miss) < np.maximum(1e-8, np.minimum(knowable, 0.1))

@@ -98,7 +98,7 @@ def _join(L: TransferFunction, gains: FloatArray, rows: list[ComplexArray], gate
                 slope = -np.log(gains[i] / gains[i - 1]) / L.log_derivative(guess)
             small = np.abs(slope) < gate
             guess = guess + np.where(small, slope, 0.0)
-        pairs = nearest_pairs(guess, row, gate)
+        pairs = nearest_pairs(np.abs(guess[:, None] - row), gate)
         now: list[int] = []
         for a, j in pairs:
             columns[alive[a]][i] = row[j]
