@@ -16,6 +16,7 @@ from looplab.engine.frequency.response import (
     frequency_range,
     log_magnitude,
     phase_rad,
+    unit_asymptotes,
 )
 from looplab.engine.frequency.sampled import Sampled, UnitCurve, search_grid
 from looplab.engine.frequency.scalar import newton_in_bracket, scalar_loop
@@ -104,9 +105,12 @@ def fastest_root(unit: TransferFunction) -> float:
 def _search_range(L: TransferFunction) -> tuple[float, float, bool]:
     """Ends of the search grid, and whether |L| is above 1 beyond: the dead time turns too often to follow."""
     overrun, reach = False, inf
-    low, high = frequency_range(L)
-    widest = high
+    widest = frequency_range(L)[1]
+    # Three decades beyond the corners: there |L| follows its asymptotes, which say whether it has 1 still before it.
+    low, high = frequency_range(L.unit)
     low, high = low * 1e-2, high * 1e2
+    for at_one in unit_asymptotes(L):
+        low, high = min(low, 0.1 * at_one), max(high, 10.0 * at_one)
     if L.theta > 0:
         # The grid follows the turns of the dead time up to here.
         reach = MAX_DELAY_POINTS * pi / (8.0 * L.theta)

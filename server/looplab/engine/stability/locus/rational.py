@@ -98,7 +98,7 @@ def _poles_at(L: TransferFunction, gains: FloatArray, breaks: tuple[Breakaway, .
 
 def _meeting(gains: FloatArray, breaks: tuple[Breakaway, ...]) -> BoolArray:
     """At which of the gains branches meet."""
-    return np.isin(gains, [b.K for b in breaks])
+    return np.asarray((gains[:, None] == np.array([b.K for b in breaks])).any(axis=1))
 
 
 def _with_poles_near_roots(L: TransferFunction, gains: FloatArray, poles: ComplexArray) -> ComplexArray:
@@ -187,7 +187,7 @@ def _joined(poles: ComplexArray, links: npt.NDArray[np.intp]) -> ComplexArray:
     order = [list(range(poles.shape[1]))]
     for step in links.tolist():
         order.append([step[j] for j in order[-1]])
-    return np.take_along_axis(poles, np.array(order), axis=1)
+    return poles[np.arange(len(order))[:, None], np.array(order)]
 
 
 def _smooth(
@@ -238,10 +238,10 @@ class _Cubics:
     def gains(self, at: npt.NDArray[np.intp], x: FloatArray) -> FloatArray:
         """K at the places x of the intervals ``at``."""
         low, high, power, back = self.low[at], self.high[at], self.power[at], self.reversed[at]
-        share = np.where(back, 1.0 - x, x) ** power
+        share = np.where(back, x - 1.0, x)
+        powers = np.where(back, high, low) + np.sign(share) * (high - low) * np.abs(share) ** power
         with np.errstate(divide="ignore"):
-            geometric = np.exp((1.0 - x) * np.log(low) + x * np.log(high))
-        return np.where(power == 0.0, geometric, np.where(back, high - (high - low) * share, low + (high - low) * share))
+            return np.where(power == 0.0, low ** (1.0 - x) * high**x, powers)
 
     def points(self, at: npt.NDArray[np.intp], x: FloatArray) -> ComplexArray:
         """Where the cubics are at those places, shape (places, n)."""
