@@ -71,11 +71,11 @@ def log_magnitude(system: TransferFunction, omega: FloatArray) -> FloatArray:
 
 
 @lru_cache(maxsize=64)
-def _corners(unit: TransferFunction) -> tuple[float, float]:
+def corners(unit: TransferFunction) -> tuple[float, float]:
     """The slowest and the fastest corner, the dead time's included [rad/time]; 1 where there is none."""
     sizes = np.abs(np.concatenate([unit.zeros, unit.poles])).tolist()
-    corners = [r for r in sizes if r] + ([1.0 / unit.theta] if unit.theta > 0 else [])
-    return (min(corners), max(corners)) if corners else (1.0, 1.0)
+    found = [r for r in sizes if r] + ([1.0 / unit.theta] if unit.theta > 0 else [])
+    return (min(found), max(found)) if found else (1.0, 1.0)
 
 
 def unit_asymptotes(system: TransferFunction) -> list[float]:
@@ -90,7 +90,7 @@ def unit_asymptotes(system: TransferFunction) -> list[float]:
 
 def frequency_range(system: TransferFunction) -> tuple[float, float]:
     """Decades that hold every corner, the dead time and the crossings of the asymptotes, one to spare each side."""
-    marks = [*_corners(system.unit), *unit_asymptotes(system)]
+    marks = [*corners(system.unit), *unit_asymptotes(system)]
     return 10.0 ** (floor(log10(min(marks)) + 1e-9) - 1), 10.0 ** (ceil(log10(max(marks)) - 1e-9) + 1)
 
 

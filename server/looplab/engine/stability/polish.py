@@ -20,10 +20,10 @@ EPSILON = float(np.finfo(float).eps)
 
 def _log_of_factors(away: ComplexArray, zeros: int) -> ComplexArray:
     """ln of prod(s - z)/prod(s - p) up to turns; one logarithm where the products stay in double precision."""
-    if away.shape[-1] <= SMALL_ORDER:
-        return np.log(away[..., :zeros].prod(axis=-1) / away[..., zeros:].prod(axis=-1))
+    if away.shape[0] <= SMALL_ORDER:
+        return np.log(away[:zeros].prod(axis=0) / away[zeros:].prod(axis=0))
     logs = np.log(away)
-    return np.asarray(logs[..., :zeros].sum(axis=-1) - logs[..., zeros:].sum(axis=-1))
+    return np.asarray(logs[:zeros].sum(axis=0) - logs[zeros:].sum(axis=0))
 
 
 def polish_closed_loop_poles(
@@ -48,17 +48,18 @@ def polish_closed_loop_poles(
         True where the residual \|1 + K L\| ended below 1e-8 (or what rounding of s allows) near the guess.
     """
     s = guess.astype(complex)
-    roots = np.concatenate([L.zeros, L.poles])
-    sign = np.ones(roots.size, dtype=complex)
-    sign[L.zeros.size :] = -1.0
+    # Roots on the first axis: sums and products along a short last one are slow.
+    roots = np.concatenate([L.zeros, L.poles]).reshape(-1, *(1,) * s.ndim)
+    many = L.zeros.size
     settled, size = False, np.zeros(())
     with np.errstate(all="ignore"):
         offset = np.log(np.asarray(gain, dtype=float) * L.gain + 0j) - 1j * np.pi
         for left in range(steps, -1, -1):
-            away = s[..., None] - roots
-            miss = _log_of_factors(away, L.zeros.size) + (offset - L.theta * s)
+            away = s - roots
+            miss = _log_of_factors(away, many) + (offset - L.theta * s)
             miss.imag -= 2.0 * np.pi * np.round(miss.imag / (2.0 * np.pi))
-            slope = np.reciprocal(away) @ sign - L.theta
+            np.reciprocal(away, out=away)
+            slope = away[:many].sum(axis=0) - away[many:].sum(axis=0) - L.theta
             if not left or settled:
                 break
             step = miss / slope

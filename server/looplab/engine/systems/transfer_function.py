@@ -236,15 +236,15 @@ class TransferFunction:
     def _broadcast(self, s: ComplexArray) -> ComplexArray:
         """The same on arrays of roots at once, for orders that cannot overflow."""
         both = min(self.zeros.size, self.poles.size)
-        column = s[:, None]
+        zeros, poles = self.zeros[:, None], self.poles[:, None]
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             value = self.gain * np.exp(-self.theta * s) if self.theta else np.full(s.shape, self.gain, dtype=complex)
             if both:
-                value *= ((column - self.zeros[:both]) / (column - self.poles[:both])).prod(axis=1)
+                value *= ((s - zeros[:both]) / (s - poles[:both])).prod(axis=0)
             if self.zeros.size > both:
-                value *= (column - self.zeros[both:]).prod(axis=1)
+                value *= (s - zeros[both:]).prod(axis=0)
             if self.poles.size > both:
-                value /= (column - self.poles[both:]).prod(axis=1)
+                value /= (s - poles[both:]).prod(axis=0)
         return np.asarray(value)
 
     def response(self, omega: npt.ArrayLike) -> ComplexArray:
@@ -253,9 +253,12 @@ class TransferFunction:
 
     def log_derivative(self, s: ComplexArray) -> ComplexArray:
         r"""G'(s)/G(s) = sum 1/(s - z) - sum 1/(s - p) - theta, same shape as s."""
-        column = np.asarray(s)[..., None]
+        s = np.asarray(s)
+        # Roots on the first axis: sums along a short last one are slow.
+        apart = s - np.concatenate([self.zeros, self.poles]).reshape(-1, *(1,) * s.ndim)
         with np.errstate(divide="ignore", invalid="ignore"):
-            out: ComplexArray = (1.0 / (column - self.zeros)).sum(axis=-1) - (1.0 / (column - self.poles)).sum(axis=-1)
+            apart = 1.0 / apart
+            out: ComplexArray = apart[: self.zeros.size].sum(axis=0) - apart[self.zeros.size :].sum(axis=0)
         return out - self.theta
 
     def __mul__(self, other: TransferFunction | float) -> TransferFunction:

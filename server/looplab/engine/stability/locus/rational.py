@@ -82,12 +82,12 @@ def _poles_at(L: TransferFunction, gains: FloatArray, breaks: tuple[Breakaway, .
     good &= np.abs(polished - found) < 0.2 * _nearest_neighbour(found)
     out = np.where(good, polished, found)
     out.imag[found.imag == 0.0] = 0.0
-    for i in np.flatnonzero(_meeting(gains, breaks)).tolist():
+    for i in _meeting(gains, breaks).nonzero()[0].tolist():
         row = meet(L, float(gains[i]), out[i], breaks)
         # As many as before: otherwise the double pole was not among them.
         if row.size == L.order:
-            # The double pole comes last.
-            good[i, -2:], good[i, :-2] = True, np.isin(row[:-2], out[i][good[i]])
+            # The double pole comes last; the others are as good as they were.
+            good[i] = [*np.isin(row[:-2], out[i][good[i]]), True, True]
             out[i] = row
     unsure = ~good.all(axis=1) & (gains > 0.0)
     if unsure.any():
@@ -132,14 +132,15 @@ def _joined_eigenvalues(
 ) -> tuple[FloatArray, ComplexArray]:
     """Poles at the gains and at some between, so that it is sure which becomes which; one branch a column."""
     poles = _poles_at(L, gains, breaks)
-    for left in (2, 1, 0):
-        links, sure = _links(L, gains, poles, breaks)
+    links, sure = _links(L, gains, poles, breaks)
+    for _ in range(2):
+        if sure.all():
+            break
         at = np.flatnonzero(~sure)
-        if not left or not at.size:
-            return gains, _joined(poles, links)
         extra = np.sqrt(gains[at] * gains[at + 1])
         gains, poles = _merged(gains, poles, extra, _poles_at(L, extra, ()))
-    raise AssertionError
+        links, sure = _links(L, gains, poles, breaks)
+    return gains, _joined(poles, links)
 
 
 def _merged(
@@ -176,7 +177,7 @@ def _links(
     gap[(side[:-1, :, None] != side[1:, None, :]) & free[:, None, None]] *= 10.0
     nearest = gap.argmin(axis=2)
     sure = (np.take_along_axis(gap.argmin(axis=1), nearest, axis=1) == np.arange(poles.shape[1])).all(axis=1)
-    for i in np.flatnonzero(~sure).tolist():
+    for i in (~sure).nonzero()[0].tolist():
         for a, b in nearest_pairs(gap[i]):
             nearest[i, a] = b
     return nearest, sure | ~free
@@ -197,7 +198,7 @@ def _smooth(
     for _ in range(5):
         cubics = _cubics(L, gains, poles, breaks, size)
         parts = _needed_parts(cubics, size)
-        cut = np.flatnonzero(parts > 1)
+        cut = (parts > 1).nonzero()[0]
         if not cut.size or gains.size > MAX_GAINS:
             break
         count = parts[cut] - 1
