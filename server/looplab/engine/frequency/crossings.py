@@ -13,9 +13,11 @@ from looplab.engine.frequency.bracketing import refine_brackets
 from looplab.engine.frequency.response import (
     AXIS_GAP,
     MAX_DELAY_POINTS,
+    corners,
     frequency_range,
     log_magnitude,
     phase_rad,
+    unit_asymptotes,
 )
 from looplab.engine.frequency.sampled import Sampled, UnitCurve, search_grid
 from looplab.engine.frequency.scalar import newton_in_bracket, scalar_loop
@@ -95,6 +97,14 @@ def _largest_beyond(unit: TransferFunction, low: float, high: float) -> float:
     return float(log_magnitude(unit, np.logspace(log10(low), max(log10(low), log10(high)) + 0.1, 200)).max())
 
 
+def _small_beyond(L: TransferFunction, omega: float) -> bool:
+    """Whether |L| is surely below 1 from omega on: twice as fast as every root, each factor is within 2 of s."""
+    if omega < 2.0 * fastest_root(L.unit):
+        return False
+    bound = log(abs(L.gain)) + (L.zeros.size + L.poles.size) * log(2.0) - L.relative_degree * log(omega)
+    return bound < 0
+
+
 @lru_cache(maxsize=64)
 def fastest_root(unit: TransferFunction) -> float:
     """Size of the largest pole or zero [rad/time]; 0 where there is none."""
@@ -104,19 +114,21 @@ def fastest_root(unit: TransferFunction) -> float:
 def _search_range(L: TransferFunction) -> tuple[float, float, bool]:
     """Ends of the search grid, and whether |L| is above 1 beyond: the dead time turns too often to follow."""
     overrun, reach = False, inf
-    low, high = frequency_range(L)
-    widest = high
-    low, high = low * 1e-2, high * 1e2
+    # Three decades beyond the corners: there |L| follows its asymptotes, which say whether it has 1 still before it.
+    slowest, fastest = corners(L.unit)
+    low, high = 1e-3 * slowest, 1e3 * fastest
+    for at_one in unit_asymptotes(L):
+        low, high = min(low, 0.1 * at_one), max(high, 10.0 * at_one)
     if L.theta > 0:
         # The grid follows the turns of the dead time up to here.
         reach = MAX_DELAY_POINTS * pi / (8.0 * L.theta)
         if L.relative_degree > 0 and L.gain:
-            overrun = _largest_beyond(L.unit, reach, high) + log(abs(L.gain)) > 0
+            overrun = not _small_beyond(L, reach) and _largest_beyond(L.unit, reach, high) + log(abs(L.gain)) > 0
             # Beyond this |L| < NEGLIGIBLE for good; the dead time would add crossovers without end.
             fade = (abs(L.gain) / NEGLIGIBLE) ** (1.0 / L.relative_degree)
             high = max(2.0 * fastest_root(L.unit), fade, 4.0 * pi / L.theta) * 1.1
         else:
-            high = max(widest, 40.0 * pi / L.theta)
+            high = max(frequency_range(L)[1], 40.0 * pi / L.theta)
         high = min(high, reach)
     # Whole decades, so that a moved gain finds the same grid again.
     return 10.0 ** floor(log10(min(low, high / 10))), min(10.0 ** ceil(log10(high)), reach), overrun
@@ -130,7 +142,7 @@ def _on_axis(roots: npt.NDArray[np.complex128]) -> FloatArray:
 def _gain_crossovers(L: TransferFunction, grid: Sampled) -> FloatArray:
     level = -grid.shift
     above = grid.curve.log_magnitude > level
-    at = np.flatnonzero(above[1:] != above[:-1])
+    at = (above[1:] != above[:-1]).nonzero()[0]
     omega = grid.omega
     if at.size <= FEW:
         f, at_grid = scalar_loop(L.unit).log_magnitude, grid.curve.log_magnitude
@@ -147,26 +159,22 @@ def _gain_crossovers(L: TransferFunction, grid: Sampled) -> FloatArray:
 def _phase_crossovers(L: TransferFunction, omega: FloatArray, phase: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Frequencies and directions; several levels may lie in one interval."""
     band = np.floor((phase + np.pi) / (2.0 * np.pi))  # changes by one at each odd multiple of pi
-    left: list[int] = []
-    level: list[float] = []
-    direction: list[float] = []
-    for i in np.flatnonzero(band[1:] != band[:-1]):
-        low, high = sorted((band[i], band[i + 1]))
-        levels = 2.0 * np.pi * np.arange(low + 1, high + 1) - np.pi
-        falling = band[i + 1] < band[i]
-        for value in levels[::-1] if falling else levels:
-            left.append(int(i))
-            level.append(float(value))
-            direction.append(-1.0 if falling else 1.0)
-    at, target = np.array(left, dtype=int), np.array(level)
+    change = band[1:] - band[:-1]
+    hit = change.nonzero()[0]
+    count = np.abs(change[hit]).astype(int)
+    at = np.repeat(hit, count)
+    direction = np.sign(change[at])
+    # The levels of one interval in the order in which they are met.
+    nth = np.arange(at.size) - np.repeat(np.cumsum(count) - count, count)
+    target = 2.0 * np.pi * np.where(direction < 0, band[at] - nth, band[at] + 1.0 + nth) - np.pi
     a, b = np.log(omega[at]), np.log(omega[at + 1])
 
     if at.size <= FEW:
         f = scalar_loop(L).phase
         ends = np.stack([phase[at], phase[at + 1]], axis=1).tolist()
-        brackets = zip(a.tolist(), b.tolist(), ends, level, strict=True)
-        return np.array([exp(newton_in_bracket(f, *bracket)) for bracket in brackets]), np.array(direction)
-    return np.exp(refine_brackets(lambda x: phase_rad(L, np.exp(x)) - target, a, b)), np.array(direction)
+        brackets = zip(a.tolist(), b.tolist(), ends, target.tolist(), strict=True)
+        return np.array([exp(newton_in_bracket(f, *bracket)) for bracket in brackets]), direction
+    return np.exp(refine_brackets(lambda x: phase_rad(L, np.exp(x)) - target, a, b)), direction
 
 
 @lru_cache(maxsize=64)

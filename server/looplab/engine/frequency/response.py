@@ -16,6 +16,8 @@ FloatArray = npt.NDArray[np.float64]
 
 POINTS_PER_DECADE = 40
 AXIS_GAP = 1e-9
+# Squares of so many roots and frequencies within 1e-18 ... 1e18 can be multiplied.
+FEW_SQUARES = 8
 MAX_DELAY_POINTS = 4000
 
 
@@ -43,13 +45,13 @@ def phase_rad(system: TransferFunction, omega: FloatArray) -> FloatArray:
     .. [1] K. J. Åström, R. M. Murray, Feedback Systems, 2nd ed., Princeton University Press (2021), ch. 10.
     """
     phase = np.full(omega.shape, -0.5 * np.pi * system.origin_order - (np.pi if system.origin_gain < 0 else 0.0))
-    for roots, sign in ((system.zeros, 1.0), (system.poles, -1.0)):
-        finite = roots[roots != 0]
-        if finite.size:
-            re, im = finite.real[:, None], finite.imag[:, None]
-            side = np.where(re > 0, -sign, sign)
-            phase += (side * np.arctan2(omega - im, np.abs(re))).sum(axis=0)
-            # atan2 of the pair's parts at omega = 0 cancels; of a real root it is zero.
+    roots = np.concatenate([system.zeros, system.poles])
+    sense = np.ones(roots.size)
+    sense[system.zeros.size :] = -1.0
+    sense[roots.real > 0] *= -1.0
+    sense[roots == 0] = 0.0
+    # atan2 of the pair's parts at omega = 0 cancels; of a real root it is zero.
+    phase += sense @ np.arctan2(omega - roots.imag[:, None], np.abs(roots.real)[:, None])
     return phase - system.theta * omega
 
 
@@ -57,24 +59,26 @@ def log_magnitude(system: TransferFunction, omega: FloatArray) -> FloatArray:
     """ln |G(j omega)|, shape of omega; -inf at a zero, +inf at a pole on the axis."""
     if system.gain == 0.0:
         return np.full(omega.shape, -np.inf)
-    s = 1j * omega
     with np.errstate(divide="ignore", over="ignore", under="ignore"):
         out = np.full(omega.shape, np.log(abs(system.gain)))
-        for roots, sign in ((system.zeros, 1.0), (system.poles, -1.0)):
+        for roots, sign in ((system.zeros, 0.5), (system.poles, -0.5)):
             if roots.size:
-                out += sign * np.log(np.abs(s - roots[:, None])).sum(axis=0)
+                squares = (omega - roots.imag[:, None]) ** 2 + roots.real[:, None] ** 2
+                # One logarithm where the product stays in double precision.
+                few = roots.size <= FEW_SQUARES
+                out += sign * (np.log(squares.prod(axis=0)) if few else np.log(squares).sum(axis=0))
     return out
 
 
 @lru_cache(maxsize=64)
-def _corners(unit: TransferFunction) -> tuple[float, float]:
+def corners(unit: TransferFunction) -> tuple[float, float]:
     """The slowest and the fastest corner, the dead time's included [rad/time]; 1 where there is none."""
     sizes = np.abs(np.concatenate([unit.zeros, unit.poles])).tolist()
-    corners = [r for r in sizes if r] + ([1.0 / unit.theta] if unit.theta > 0 else [])
-    return (min(corners), max(corners)) if corners else (1.0, 1.0)
+    found = [r for r in sizes if r] + ([1.0 / unit.theta] if unit.theta > 0 else [])
+    return (min(found), max(found)) if found else (1.0, 1.0)
 
 
-def _unit_asymptotes(system: TransferFunction) -> list[float]:
+def unit_asymptotes(system: TransferFunction) -> list[float]:
     """Frequencies at which the low- and the high-frequency asymptote of |G| reach 1."""
     out = []
     for gain, order in ((system.gain, system.relative_degree), (system.origin_gain, system.origin_order)):
@@ -86,7 +90,7 @@ def _unit_asymptotes(system: TransferFunction) -> list[float]:
 
 def frequency_range(system: TransferFunction) -> tuple[float, float]:
     """Decades that hold every corner, the dead time and the crossings of the asymptotes, one to spare each side."""
-    marks = [*_corners(system.unit), *_unit_asymptotes(system)]
+    marks = [*corners(system.unit), *unit_asymptotes(system)]
     return 10.0 ** (floor(log10(min(marks)) + 1e-9) - 1), 10.0 ** (ceil(log10(max(marks)) - 1e-9) + 1)
 
 
@@ -94,6 +98,8 @@ def _resonances(system: TransferFunction) -> FloatArray:
     """Points around lightly damped roots, and a hair on either side of roots on the axis."""
     roots = np.concatenate([system.zeros, system.poles])
     upper = roots[(roots.imag > 0) & (np.abs(roots.real) < 0.4 * np.abs(roots))]
+    if not upper.size:
+        return upper.real
     spread = np.array([0.0, 0.3, 0.7, 1.2, 2.0, 4.0, 10.0, 30.0])
     spread = np.concatenate([-spread[:0:-1], spread])
     points = [upper.imag[:, None] + np.abs(upper.real)[:, None] * spread]
@@ -126,7 +132,7 @@ def frequency_grid(system: TransferFunction, low: float | None = None, high: flo
     if not (np.isfinite(low) and np.isfinite(high) and 0 < low < high):
         raise InvalidInput("the frequency range must be two positive numbers, the smaller first", field="omega")
     decades = np.log10(high / low)
-    points = [np.logspace(np.log10(low), np.log10(high), int(np.ceil(decades * POINTS_PER_DECADE)) + 1)]
+    points = [10.0 ** np.linspace(np.log10(low), np.log10(high), int(np.ceil(decades * POINTS_PER_DECADE)) + 1)]
     extra = _resonances(system)
     points.append(extra[(extra > low) & (extra < high)])
     if system.theta > 0:
@@ -135,8 +141,9 @@ def frequency_grid(system: TransferFunction, low: float | None = None, high: flo
         start = step / (10 ** (1.0 / POINTS_PER_DECADE) - 1.0)
         if start < high:
             points.append(np.arange(start, min(high, start + MAX_DELAY_POINTS * step), step))
-    grid = np.unique(np.concatenate(points))
-    keep = np.concatenate([[True], np.diff(grid) > 1e-13 * grid[1:]])
+    grid = np.sort(np.concatenate(points))
+    keep = np.ones(grid.size, dtype=bool)
+    np.greater(grid[1:] - grid[:-1], 1e-13 * grid[1:], out=keep[1:])
     return grid[keep]
 
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from functools import cached_property, lru_cache
-from math import inf, log
+from math import exp, inf, log
 from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from looplab.engine.frequency.bracketing import refine_brackets
 from looplab.engine.frequency.response import frequency_grid, log_magnitude, phase_rad
+from looplab.engine.frequency.scalar import newton_in_bracket, scalar_loop
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
@@ -124,25 +124,18 @@ class Sampled:
 def search_grid(unit: TransferFunction, low: float, high: float) -> FloatArray:
     """The adaptive grid with every extremum of magnitude and phase on it, so that no pair of crossings hides."""
     omega = frequency_grid(unit, low, high)
-
-    def magnitude_slope(x: FloatArray) -> FloatArray:
-        w = np.exp(x)
-        return -unit.log_derivative((1j * w).astype(complex)).imag * w
-
-    def phase_slope(x: FloatArray) -> FloatArray:
-        w = np.exp(x)
-        return unit.log_derivative((1j * w).astype(complex)).real * w
-
-    x = np.log(omega)
-    turning = []
+    loop = scalar_loop(unit)
+    turning: list[float] = []
     with np.errstate(all="ignore"):
         rate = omega * unit.log_derivative((1j * omega).astype(complex))
-        for slope, on_grid in ((magnitude_slope, -rate.imag), (phase_slope, rate.real)):
-            sign = np.sign(on_grid)
-            at = np.flatnonzero(sign[1:] * sign[:-1] < 0)
-            if at.size and at.size <= MOST_EXTREMA:
-                turning.append(np.exp(refine_brackets(slope, x[at], x[at + 1])))
-    return _read_only(np.unique(np.concatenate([omega, *turning])) if turning else omega)
+    for slope, on_grid in ((loop.magnitude_slope, -rate.imag), (loop.phase_slope, rate.real)):
+        falls = on_grid < 0
+        at = np.flatnonzero((falls[1:] != falls[:-1]) & (on_grid[1:] != 0) & (on_grid[:-1] != 0))
+        if at.size <= MOST_EXTREMA:
+            for i in at.tolist():
+                ends = on_grid[i : i + 2].tolist()
+                turning.append(exp(newton_in_bracket(slope, log(omega[i]), log(omega[i + 1]), ends)))
+    return _read_only(np.unique(np.concatenate([omega, turning])) if turning else omega)
 
 
 @lru_cache(maxsize=64)

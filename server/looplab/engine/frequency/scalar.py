@@ -72,6 +72,28 @@ class ScalarLoop:
                 q -= part
         return value, q
 
+    def magnitude_slope(self, x: float) -> tuple[float, float]:
+        """d ln |L| / dx and its slope."""
+        rate, bend = self._rate(x)
+        return -rate.imag, -bend.imag
+
+    def phase_slope(self, x: float) -> tuple[float, float]:
+        """d arg L / dx and its slope."""
+        rate, bend = self._rate(x)
+        return rate.real, bend.real
+
+    def _rate(self, x: float) -> tuple[complex, complex]:
+        """omega L'/L and its slope."""
+        omega = math.exp(x)
+        s = complex(0.0, omega)
+        q, dq = complex(-self.theta), 0j
+        for roots, sign in ((self.zeros, 1.0), (self.poles, -1.0)):
+            for r in roots:
+                part = 1.0 / ((s - r) or TINY)
+                q += sign * part
+                dq -= sign * part * part
+        return omega * q, omega * (q + s * dq)
+
     def value_and_rates(self, s: complex, gain: float) -> tuple[complex, complex, complex]:
         """L, q = L'/L and q' at s."""
         value = self.sign * gain * cmath.exp(-self.theta * s)

@@ -13,14 +13,15 @@ from looplab.engine.systems.transfer_function import SMALL_ORDER, TransferFuncti
 
 ComplexArray = npt.NDArray[np.complex128]
 
+# What one more step would leave of ln(-K L) is rounding.
+NEGLIGIBLE = 1e-15
 # After a step this small, relative to the root, the next one would be rounding.
 FINAL = 1e-12
 EPSILON = float(np.finfo(float).eps)
 
 
 def _log_of_factors(away: ComplexArray, zeros: int) -> ComplexArray:
-    """ln of prod(s - z)/prod(s - p) up to turns; the roots lie along the first axis, zeros first."""
-    # One logarithm where the products stay in double precision.
+    """ln of prod(s - z)/prod(s - p) up to turns; one logarithm where the products stay in double precision."""
     if away.shape[0] <= SMALL_ORDER:
         return np.log(away[:zeros].prod(axis=0) / away[zeros:].prod(axis=0))
     logs = np.log(away)
@@ -40,7 +41,7 @@ def polish_closed_loop_poles(
     gain : array_like
         K, broadcast against guess.
     steps : int
-        Newton steps.
+        Newton steps at most.
 
     Returns
     -------
@@ -49,24 +50,28 @@ def polish_closed_loop_poles(
         True where the residual \|1 + K L\| ended below 1e-8 (or what rounding of s allows) near the guess.
     """
     s = guess.astype(complex)
+    # Roots on the first axis: sums and products along a short last one are slow.
     roots = np.concatenate([L.zeros, L.poles]).reshape(-1, *(1,) * s.ndim)
-    zeros, near = L.zeros.size, 0.3 * np.abs(guess) + 1e-6
+    many, near = L.zeros.size, 0.3 * np.abs(guess) + 1e-6
+    settled, size = False, np.zeros(())
     with np.errstate(all="ignore"):
         offset = np.log(np.asarray(gain, dtype=float) * L.gain + 0j) - 1j * np.pi
         for left in range(steps, -1, -1):
             away = s - roots
-            miss = _log_of_factors(away, zeros) + (offset - L.theta * s)
+            miss = _log_of_factors(away, many) + (offset - L.theta * s)
             miss.imag -= 2.0 * np.pi * np.round(miss.imag / (2.0 * np.pi))
-            rates = np.reciprocal(away)
-            slope = rates[:zeros].sum(axis=0) - rates[zeros:].sum(axis=0) - L.theta
-            if not left:
+            np.reciprocal(away, out=away)
+            slope = away[:many].sum(axis=0) - away[many:].sum(axis=0) - L.theta
+            if not left or settled:
                 break
             step = miss / slope
             step[~np.isfinite(step)] = 0.0
             s = s - step
-            # A root that has left the neighbourhood of its guess is none of ours: it is not waited for.
-            if not ((np.abs(step) > FINAL * np.abs(s)) & (np.abs(s - guess) <= near)).any():
-                break
+            # Newton's misses shrink as their squares; steps of a few roundings of s lead nowhere, and a root that has
+            # left the neighbourhood of its guess is none of ours.
+            last, size = size, np.abs(miss)
+            moving = (size**3 > NEGLIGIBLE * last**2) & (np.abs(step) > 4.0 * EPSILON * np.abs(s))
+            settled = not (moving & (np.abs(s - guess) <= near)).any()
         # Next to an open-loop pole L cannot be known better than the rounding of s allows.
         knowable = 8.0 * EPSILON * np.abs(s * slope)
         good = np.abs(miss) < np.maximum(1e-8, np.minimum(knowable, 0.1))

@@ -253,9 +253,12 @@ class TransferFunction:
 
     def log_derivative(self, s: ComplexArray) -> ComplexArray:
         r"""G'(s)/G(s) = sum 1/(s - z) - sum 1/(s - p) - theta, same shape as s."""
-        column = np.asarray(s)[..., None]
+        s = np.asarray(s)
+        # Roots on the first axis: sums along a short last one are slow.
+        apart = s - np.concatenate([self.zeros, self.poles]).reshape(-1, *(1,) * s.ndim)
         with np.errstate(divide="ignore", invalid="ignore"):
-            out: ComplexArray = (1.0 / (column - self.zeros)).sum(axis=-1) - (1.0 / (column - self.poles)).sum(axis=-1)
+            apart = 1.0 / apart
+            out: ComplexArray = apart[: self.zeros.size].sum(axis=0) - apart[self.zeros.size :].sum(axis=0)
         return out - self.theta
 
     def __mul__(self, other: TransferFunction | float) -> TransferFunction:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -204,9 +205,9 @@ def breakaway_points(L: TransferFunction) -> tuple[Breakaway, ...]:
 
 def _distinct_roots(L: TransferFunction) -> tuple[ComplexArray, FloatArray]:
     """The roots of L, each once, and their multiplicities: positive for zeros, negative for poles."""
-    zeros, zero_count = np.unique(L.zeros, return_counts=True)
-    poles, pole_count = np.unique(L.poles, return_counts=True)
-    return np.concatenate([zeros, poles]), np.concatenate([zero_count, -pole_count]).astype(float)
+    weights = Counter(L.zeros.tolist())
+    weights.subtract(L.poles.tolist())
+    return np.array(list(weights), dtype=complex), np.array(list(weights.values()), dtype=float)
 
 
 def _turning_points(roots_: ComplexArray, weights: FloatArray, theta: float) -> ComplexArray:
@@ -214,16 +215,13 @@ def _turning_points(roots_: ComplexArray, weights: FloatArray, theta: float) -> 
     # In units of a typical root: expanded in other units the coefficients spread over hundreds of decades.
     sizes = np.abs(roots_)
     unit = float(np.exp(np.mean(np.log(sizes[sizes > 0])))) if (sizes > 0).any() else 1.0
-    scaled = roots_ / unit
-    n = scaled.size
-    others = np.zeros((n, n + 1), dtype=complex)  # row i holds prod(s - r) without r_i, multiplied out
-    others[:, -1] = 1.0
-    for j, r in enumerate(scaled):
-        grown = np.roll(others, -1, axis=1) - r * others
-        others = np.where(np.arange(n)[:, None] == j, others, grown)
-    turning = weights @ others
-    turning -= theta * unit * np.poly(scaled)
-    return unit * roots(turning.real)
+    # prod(s - r) and sum w prod(s - other r), highest power first, grown by one factor after the other.
+    product, turning = [1.0 + 0j], [0j]
+    for r, w in zip((roots_ / unit).tolist(), weights.tolist(), strict=True):
+        turning = [a - r * b + w * c for a, b, c in zip([*turning, 0j], [0j, *turning], [0j, *product], strict=True)]
+        product = [a - r * b for a, b in zip([*product, 0j], [0j, *product], strict=True)]
+    coefficients = np.array(turning) - theta * unit * np.array(product)
+    return unit * roots(coefficients.real)
 
 
 def _newton_on_turning(s: ComplexArray, roots_: ComplexArray, weights: FloatArray, theta: float) -> ComplexArray:
@@ -232,7 +230,11 @@ def _newton_on_turning(s: ComplexArray, roots_: ComplexArray, weights: FloatArra
         inverse = 1.0 / (s[:, None] - roots_)
         f = inverse @ weights - theta
         step = f / (f * inverse.sum(axis=1) - inverse**2 @ weights)
-        s = s - np.where(np.abs(step) <= 0.1 * np.abs(s) + 1e-7, step, 0.0)
+        size = np.abs(step)
+        taken = size <= 0.1 * np.abs(s) + 1e-7
+        s = s - np.where(taken, step, 0.0)
+        if not (taken & (size > 1e-15 * np.abs(s))).any():
+            break
     return s
 
 

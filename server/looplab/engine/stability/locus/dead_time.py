@@ -78,50 +78,76 @@ class Collocation:
 
 def _distinct(poles: ComplexArray) -> ComplexArray:
     """Without the copies that Newton made of one root, and with exact conjugates."""
-    upper = poles[poles.imag > 1e-7 * np.abs(poles)]
-    real = poles[np.abs(poles.imag) <= 1e-7 * np.abs(poles)].real.astype(complex)
+    real: list[complex] = []
+    upper: list[complex] = []
+    for s in poles.tolist():
+        rounding = 1e-7 * abs(s)
+        if s.imag > rounding:
+            upper.append(s)
+        elif s.imag >= -rounding:
+            real.append(complex(s.real))
     kept: list[complex] = []
-    for s in np.concatenate([real, upper]):
+    for s in real + upper:
         if all(abs(s - other) > 1e-6 * max(abs(s), 1e-9) for other in kept):
             kept += [s] if s.imag == 0 else [s, s.conjugate()]
     return np.array(kept, dtype=complex)
 
 
+def _links(L: TransferFunction, gains: FloatArray, poles: ComplexArray, gate: float) -> list[list[int]]:
+    """Which pole of the next gain each pole becomes, -1 for none; poles of shape (m, n) with NaN where there are fewer.
+
+    Each is followed along its tangent ds/dK = -L/(K L') to the nearest pole within ``gate``.
+    """
+    with np.errstate(all="ignore"):
+        ahead = -np.log(gains[1:] / gains[:-1])[:, None] / L.log_derivative(poles[:-1])
+        ahead[~(np.abs(ahead) < gate)] = 0.0
+        gap = np.abs((poles[:-1] + ahead)[:, :, None] - poles[1:, None, :])
+    gap[~(gap <= gate)] = np.inf
+    nearest = gap.argmin(axis=2)
+    reached = np.isfinite(gap.min(axis=2))
+    mutual = np.take_along_axis(gap.argmin(axis=1), nearest, axis=1) == np.arange(poles.shape[1])
+    links = np.where(reached & mutual, nearest, -1)
+    # The nearest of some pole is nearer to another: the nearest pairs come first.
+    for i in np.flatnonzero((reached & ~mutual).any(axis=1)).tolist():
+        links[i] = -1
+        for a, b in nearest_pairs(gap[i], gate):
+            links[i, a] = b
+    steps: list[list[int]] = links.tolist()
+    return steps
+
+
 def _join(L: TransferFunction, gains: FloatArray, rows: list[ComplexArray], gate: float) -> ComplexArray:
     """Branches as rows of an array with NaN where a branch is outside, shape (branches, gains)."""
-    columns: list[ComplexArray] = []
-    alive: list[int] = []
-    for i, row in enumerate(rows):
-        guess = np.array([columns[b][i - 1] for b in alive], dtype=complex)
-        if i > 1 and gains[i - 1] > 0 and guess.size:
-            with np.errstate(all="ignore"):
-                slope = -np.log(gains[i] / gains[i - 1]) / L.log_derivative(guess)
-            small = np.abs(slope) < gate
-            guess = guess + np.where(small, slope, 0.0)
-        pairs = nearest_pairs(guess, row, gate)
-        now: list[int] = []
-        for a, j in pairs:
-            columns[alive[a]][i] = row[j]
-            now.append(alive[a])
-        matched = {j for _, j in pairs}
-        for j in range(row.size):
-            if j not in matched:
-                columns.append(np.full(len(rows), np.nan, dtype=complex))
-                columns[-1][i] = row[j]
-                now.append(len(columns) - 1)
-        alive = now
-    kept = [c for c in columns if np.count_nonzero(np.isfinite(c)) > 1]
-    return np.array(kept, dtype=complex).reshape(len(kept), len(rows))
+    sizes = [row.size for row in rows]
+    there = np.arange(max(sizes)) < np.array(sizes)[:, None]
+    poles = np.full(there.shape, np.nan, dtype=complex)
+    poles[there] = np.concatenate(rows)
+    # Which branch each pole is on.
+    on, count = [list(range(sizes[0]))], sizes[0]
+    for step, size in zip(_links(L, gains, poles, gate), sizes[1:], strict=True):
+        now = [-1] * size
+        for branch, k in zip(on[-1], step, strict=False):
+            if k >= 0:
+                now[k] = branch
+        for k in range(size):
+            if now[k] < 0:
+                now[k], count = count, count + 1
+        on.append(now)
+    branches = np.full((count, len(rows)), np.nan, dtype=complex)
+    branches[np.concatenate(on).astype(int), np.nonzero(there)[0]] = poles[there]
+    return branches[np.count_nonzero(np.isfinite(branches), axis=1) > 1]
 
 
-def _coarse(branches: ComplexArray, size: float) -> npt.NDArray[np.bool_]:
-    """Intervals of the gain in which some branch jumps or turns, shape (gains-1,)."""
+def _coarse(branches: ComplexArray, size: float, corner: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """Intervals of the gain in which some branch jumps, or turns but for a corner, shape (gains-1,)."""
     far: npt.NDArray[np.bool_]
     with np.errstate(all="ignore"):
         step = np.diff(branches, axis=1)
-        far = np.asarray((np.abs(step) > 0.05 * size).any(axis=0))
+        length = np.abs(step)
+        far = np.asarray((length > 0.05 * size).any(axis=0))
         turn = np.abs(np.angle(step[:, 1:] / step[:, :-1]))
-        bend = ((turn > 0.2) & (np.minimum(np.abs(step[:, 1:]), np.abs(step[:, :-1])) > 0.006 * size)).any(axis=0)
+        bend = ((turn > 0.2) & (np.minimum(length[:, 1:], length[:, :-1]) > 0.006 * size)).any(axis=0)
+    bend &= ~corner[1:-1]
     far[:-1] |= bend
     far[1:] |= bend
     return far
@@ -157,13 +183,14 @@ def dead_time_branches(
     nodes = int(min(12 + np.ceil(L.theta * np.hypot(inside.top, inside.left)), MAX_NODES))
     positive = gains[gains > 0]
     line = Collocation(L, nodes)
-    careful = Collocation(L, min(2 * nodes, MAX_NODES), careful=True)
     if not _proved(line, positive, inside):
-        line = careful
-    fine, rows = _follow(line, positive, inside, size)
+        line = Collocation(L, min(2 * nodes, MAX_NODES), careful=True)
+    meeting = np.array([b.K for b in breaks])
+    fine, rows = _follow(line, positive, inside, size, meeting)
     proved = _proved(line, fine, inside)
-    if not proved and line is not careful:
-        fine, rows = _follow(careful, positive, inside, size)
+    if not proved and not line.careful:
+        careful = Collocation(L, min(2 * nodes, MAX_NODES), careful=True)
+        fine, rows = _follow(careful, positive, inside, size, meeting)
         proved = _proved(careful, fine, inside)
     near = [b for b in breaks if inside.contains(np.array([b.s]))[0]]
     rows = [meet(L, K, row, near) for K, row in zip(fine.tolist(), rows, strict=True)]
@@ -175,12 +202,12 @@ def dead_time_branches(
 
 
 def _follow(
-    line: Collocation, gains: FloatArray, inside: Rectangle, size: float
+    line: Collocation, gains: FloatArray, inside: Rectangle, size: float, meeting: FloatArray
 ) -> tuple[FloatArray, list[ComplexArray]]:
-    """Gains, more of them where a branch jumps or turns, and the poles at each."""
+    """Gains, more of them where a branch jumps or turns (but at ``meeting`` gains), and the poles at each."""
     rows = line.poles(gains, inside)
     for _ in range(4):
-        coarse = _coarse(_join(line.L, gains, rows, GATE * size), size)
+        coarse = _coarse(_join(line.L, gains, rows, GATE * size), size, np.isin(gains, meeting))
         if not coarse.any() or gains.size > MAX_GAINS:
             break
         extra = np.sqrt(gains[:-1][coarse] * gains[1:][coarse])

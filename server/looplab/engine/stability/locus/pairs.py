@@ -5,19 +5,22 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-ComplexArray = npt.NDArray[np.complex128]
 
-
-def nearest_pairs(guess: ComplexArray, points: ComplexArray, gate: float = np.inf) -> list[tuple[int, int]]:
-    """Pairs (guess, point), nearest first, each used once."""
-    if not guess.size or not points.size:
-        return []
-    gap = np.abs(guess[:, None] - points[None, :])
+def nearest_pairs(gap: npt.NDArray[np.float64], gate: float = np.inf) -> list[tuple[int, int]]:
+    """Pairs (row, column) of a matrix of distances, nearest first, each row and column used once, none beyond gate."""
+    rows, columns = gap.shape
+    values = gap.ravel()
+    order = values.argsort(kind="stable")
+    free_rows, free_columns = set(range(rows)), set(range(columns))
     pairs: list[tuple[int, int]] = []
-    for flat in np.argsort(gap, axis=None):
-        i, j = divmod(int(flat), points.size)
-        if gap[i, j] > gate:
-            break
-        if all(i != a and j != b for a, b in pairs):
+    for flat, distance in zip(order.tolist(), values[order].tolist(), strict=True):
+        i, j = divmod(flat, columns)
+        if i in free_rows and j in free_columns:
+            if distance > gate:
+                break
             pairs.append((i, j))
+            free_rows.remove(i)
+            free_columns.remove(j)
+            if not (free_rows and free_columns):
+                break
     return pairs
