@@ -123,20 +123,31 @@ function gramians({ gramians: { controllability, observability, hankel_singular_
   );
 }
 
-/** @param {StateSpaceAnswer} found @param {ChannelAnswer | undefined} channel */
+/** What is left when hidden modes go: of the transfer function, and of the state equations. @param {StateSpaceAnswer} found @param {ChannelAnswer | undefined} channel */
 function minimal({ poles, minimal_realization: smallest }, channel) {
-  const { order, removed, tolerance, smallest_kept, largest_removed } = smallest;
+  const { removed, tolerance, smallest_kept, largest_removed } = smallest;
   const decided = [`Singular values up to ${formatNumber(tolerance, 2)} count as zero`, smallest_kept === null ? "" : `the smallest kept is ${formatNumber(smallest_kept, 2)}`, largest_removed === null ? "" : `the largest left out ${formatNumber(largest_removed, 2)}`];
-  const gone = removed.map(({ pole, hidden_from, stable }) => h("li", { class: stable ? "" : "warn" }, `The ${stable ? "" : "unstable "}mode ${formatComplex(pole)} is left out: ${hidden_from === "input" ? "no input moves it" : "no output shows it"}.`));
+  const gone = removed.map(({ pole, hidden_from, stable }) => h("li", { class: stable ? "" : "warn" }, `The ${stable ? "" : "unstable "}mode ${formatComplex(pole)}: ${hidden_from === "input" ? "no input moves it" : "no output shows it"}.`));
   return part(
     "Minimal realisation",
-    channel?.system ? formulaBlock("With every mode", channel.system) : null,
-    channel?.minimal ? formulaBlock("Minimal", channel.minimal) : null,
-    channel?.reason ? h("p", { class: "finding" }, sentence(channel.reason)) : null,
-    h("p", { class: "finding" }, removed.length === 0 ? `Nothing is left out: order ${order}. ` : `Order ${order} instead of ${poles.length}. `, `${decided.filter(Boolean).join("; ")}.`),
+    ...(channel ? cancellations(channel, poles.length) : []),
+    h("p", { class: "finding" }, removed.length === 0 ? "The state equations leave nothing out. " : "The state equations leave out: ", `${decided.filter(Boolean).join("; ")}.`),
     gone.length > 0 ? h("ul", { class: "cancellations" }, ...gone) : null,
     removed.length > 0 ? h("div", { class: "matrices" }, ...(/** @type {const} */ (["A", "B", "C", "D"])).map((name) => matrixBlock(name, smallest[name]))) : null,
   );
+}
+
+/** @param {ChannelAnswer} channel @param {number} order */
+function cancellations({ system, minimal: smallest, minimal_order, cancelled, closest_kept, reason }, order) {
+  const gone = cancelled.map(({ pole, zero, distance, stable }) => h("li", { class: stable ? "" : "warn" }, `The zero ${formatComplex(zero)} cancels the ${stable ? "stable" : "unstable"} pole ${formatComplex(pole)} (distance ${formatNumber(distance, 2)}).`));
+  const kept = closest_kept === null ? "" : ` The closest zero and pole that were kept are ${formatNumber(closest_kept, 2)} apart.`;
+  return [
+    system ? formulaBlock("With every mode", system) : null,
+    smallest ? formulaBlock("Minimal", smallest) : null,
+    reason ? h("p", { class: "finding" }, sentence(reason)) : null,
+    smallest ? h("p", { class: "finding" }, minimal_order === order ? `Nothing cancels: order ${order}.${kept}` : `Order ${minimal_order} instead of ${order}.${kept}`) : null,
+    gone.length > 0 ? h("ul", { class: "cancellations" }, ...gone) : null,
+  ];
 }
 
 /** @param {StateSpaceAnswer} found @returns {Table} */

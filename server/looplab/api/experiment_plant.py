@@ -2,50 +2,31 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
-
-from pydantic import Field
-
-from looplab.api.simulations import SimulationRequest, Values, open_loop_settings
+from looplab.api.simulations import SimulationRequest, open_loop_settings
 from looplab.engine.errors import InvalidInput
 from looplab.engine.systems import TransferFunction
 from looplab.jobs.experiments import PlantPoint
 from looplab.plants import load_plant
-from looplab.schemas import Model, System, located
-
-Name = Annotated[str, Field(max_length=32)]
+from looplab.schemas import PlantSystem, System, located
 
 
-class LibraryPlant(Model):
-    """A nonlinear plant of the library at one of its operating points, where it is brought to rest first."""
+def library_point(plant: PlantSystem) -> PlantPoint:
+    """A plant of the library as a worker takes it: nonlinear, and brought to rest at its operating point first.
 
-    type: Literal["plant"]
-    id: Annotated[str, Field(max_length=64)]
-    input: Name
-    output: Name
-    operating_point: Annotated[str | None, Field(max_length=64)] = None
-    inputs: Values = Field(default={})
-    parameters: Values = Field(default={})
-    initial: Values = Field(default={})
-
-    def to_point(self) -> PlantPoint:
-        """The same as a worker takes it; raises EngineError naming the field."""
-        with located("plant"):
-            document = load_plant(self.id).document
-            settings = open_loop_settings(
-                SimulationRequest(
-                    horizon=1.0,
-                    operating_point=self.operating_point,
-                    parameters=self.parameters,
-                    initial=self.initial,
-                ),
-                document,
-            )
-        inputs = {name: float(value) for name, value in settings.inputs.items() if isinstance(value, float | int)}
-        return PlantPoint(self.id, self.input, self.output, inputs | self.inputs, settings.parameters, settings.initial)
-
-
-AnyPlant = Annotated[System | LibraryPlant, Field(discriminator="type")]
+    Raises
+    ------
+    EngineError
+        Naming the field.
+    """
+    with located("plant"):
+        settings = open_loop_settings(
+            SimulationRequest(
+                horizon=1.0, operating_point=plant.operating_point, parameters=plant.params, initial=plant.near
+            ),
+            load_plant(plant.id).document,
+        )
+    inputs = {name: float(value) for name, value in settings.inputs.items() if isinstance(value, float | int)}
+    return PlantPoint(plant.id, plant.input, plant.output, inputs | plant.inputs, settings.parameters, settings.initial)
 
 
 def linear_plant(plant: System) -> TransferFunction:

@@ -14,7 +14,7 @@ from starlette.responses import Response
 from looplab.api.answers.experiments import RelayAnswer, StepTestAnswer, UltimateCycleAnswer
 from looplab.api.docs import BUSY, ERRORS
 from looplab.api.encode import json_response
-from looplab.api.experiment_plant import AnyPlant, LibraryPlant, linear_plant, require_horizon
+from looplab.api.experiment_plant import library_point, linear_plant, require_horizon
 from looplab.api.simulations import Workers
 from looplab.api.strict import StrictRoute
 from looplab.engine.errors import EngineError, RuleNotApplicable
@@ -28,7 +28,7 @@ from looplab.engine.response.inputs import step
 from looplab.engine.systems import TransferFunction
 from looplab.engine.tuning.ultimate_point import stabilising_sign, ultimate_point
 from looplab.jobs import experiments as tasks
-from looplab.schemas import Model, located
+from looplab.schemas import Model, PlantSystem, System, located
 from looplab.schemas.control_loops import SensorShape
 
 router = APIRouter(prefix="/experiments", tags=["experiments"], route_class=StrictRoute)
@@ -42,7 +42,7 @@ FOPDT_PLANT = {"type": "fopdt", "K": 1, "tau": 2, "theta": 1}
 class StepTestRequest(Model):
     """An open-loop step test."""
 
-    plant: AnyPlant
+    plant: System
     size: Annotated[float, Field(description="Change of the input [input].")] = 1.0
     start: Annotated[float, Field(ge=0, description="When it is made; moved to the next sample [time].")] = 0.0
     horizon: Horizon = None
@@ -62,7 +62,7 @@ class StepTestRequest(Model):
 class UltimateCycleRequest(Model):
     """Proportional control with a given gain, or the search for the ultimate one."""
 
-    plant: AnyPlant
+    plant: System
     Kc: Annotated[float | None, Field(description="One run with this gain; left out: Ku is searched.")] = None
     horizon: Horizon = None
     start: Annotated[
@@ -84,7 +84,7 @@ class UltimateCycleRequest(Model):
 class RelayRequest(Model):
     """Relay feedback about the plant's point of rest."""
 
-    plant: AnyPlant
+    plant: System
     amplitude: Annotated[float, Field(gt=0, description="d: half the height of the square wave [input].")] = 1.0
     hysteresis: Annotated[float, Field(ge=0, description="Half the width of the dead band [output].")] = 0.0
     negative_gain: Annotated[bool, Field(description="Of a library plant: its output falls as its input rises.")] = (
@@ -117,9 +117,9 @@ async def step_test(
     request: Annotated[StepTestRequest, Body(openapi_examples=STEP_EXAMPLES)], workers: Workers
 ) -> Response:
     """The record of a step of the input, with noise, drift and limits of the input; /identify takes its t, u and y."""
-    if isinstance(request.plant, LibraryPlant):
+    if isinstance(request.plant, PlantSystem):
         test = request.test(require_horizon(request.horizon))
-        return json_response(await workers.run(tasks.step_test, request.plant.to_point(), test))
+        return json_response(await workers.run(tasks.step_test, library_point(request.plant), test))
     plant = linear_plant(request.plant)
     horizon = request.horizon or request.start + response_horizon(plant.poles, step(1.0), plant.theta)
     found = await run_in_threadpool(linear_step_test, plant, request.test(horizon))
@@ -192,9 +192,9 @@ async def cycle(
     Beside the search stands the exact point of a linear plant. A plant without an ultimate gain is refused with the
     reason; of an unstable one the window of stable gains is told.
     """
-    if isinstance(request.plant, LibraryPlant):
+    if isinstance(request.plant, PlantSystem):
         horizon, sensor = require_horizon(request.horizon), request.instrument()
-        at = request.plant.to_point()
+        at = library_point(request.plant)
         answer = await workers.run(tasks.ultimate_cycle, at, request.Kc, request.start, request.bump, horizon, sensor)
         return json_response({**answer, "exact": None, "error_pct": None, "window": None})
     plant = linear_plant(request.plant)
@@ -224,10 +224,10 @@ async def relay(request: Annotated[RelayRequest, Body(openapi_examples=RELAY_EXA
     Of a linear plant every switch is exact, and the bias of the describing function against the exact ultimate point is
     told; /tune takes the answer's `relay`.
     """
-    if isinstance(request.plant, LibraryPlant):
+    if isinstance(request.plant, PlantSystem):
         horizon = require_horizon(request.horizon)
         settings = Relay(request.amplitude, request.hysteresis, -1 if request.negative_gain else 1)
-        answer = await workers.run(tasks.relay, request.plant.to_point(), settings, horizon, horizon / 20.0)
+        answer = await workers.run(tasks.relay, library_point(request.plant), settings, horizon, horizon / 20.0)
         return json_response({**answer, "exact": None, "Ku_bias_pct": None, "Pu_bias_pct": None})
     plant = linear_plant(request.plant)
     if not plant.order:
