@@ -6,7 +6,7 @@ import re
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from looplab.plants import plant_document, plant_ids
+from looplab.plants import plant_document, plant_ids, transfer_matrix_document, transfer_matrix_ids
 from workbench import violations
 
 VALUES = "document.querySelector('plant-schematic').values"
@@ -37,8 +37,9 @@ def run_until(page: Page, t: float) -> float:
 def test_the_library_shows_every_plant_and_finds_by_word(page: Page):
     page.goto("/plants")
     cards = page.locator(".plant-tile")
-    expect(cards).to_have_count(len(plant_ids()))
-    titles = {plant_document(plant_id)["title"] for plant_id in plant_ids()}
+    documents = [*map(plant_document, plant_ids()), *map(transfer_matrix_document, transfer_matrix_ids())]
+    expect(cards).to_have_count(len(documents))
+    titles = {document["title"] for document in documents}
     assert set(page.locator(".plant-tile h3").all_inner_texts()) == titles
     page.get_by_label("Search").fill("pendulum cart")
     expect(page.locator(".plant-tile:visible")).to_have_count(1)

@@ -20,7 +20,7 @@ const REST_MS = 250;
  * @property {string} id
  * @property {string} title
  * @property {string} help
- * @property {string} action  what the button says
+ * @property {string | null} action  what the button says; null where the panel asks by itself
  * @property {(request: any) => Promise<any>} send
  * @property {() => object | null} request  null while the form is not good; what the plant is set to is added
  * @property {HTMLElement[]} [form]
@@ -34,7 +34,7 @@ const REST_MS = 250;
  * @property {boolean} [follows]  asks again when the plant is set to something else
  */
 
-/** @param {HTMLElement} host @param {PlantBench} bench @param {PlantAnalysis} options */
+/** @param {HTMLElement} host @param {Pick<PlantBench, "subscribe"> & {request: () => object}} bench @param {PlantAnalysis} options */
 export function mountPlantAnalysis(host, bench, options) {
   /** @type {any} */
   let answer = null;
@@ -45,7 +45,7 @@ export function mountPlantAnalysis(host, bench, options) {
   let ranges = {};
   const message = h("p", { class: "analysis-status", role: "status" });
   const words = h("div", { class: "plant-words" });
-  const button = h("button", { type: "button", class: "button primary", onclick: () => ask() }, options.action);
+  const button = options.action === null ? null : h("button", { type: "button", class: "button primary", onclick: () => ask() }, options.action);
   const form = h("div", { class: "plant-form" }, ...(options.form ?? []), button, message);
   const frame = createPanelFrame(host, {
     id: options.id,

@@ -16,8 +16,7 @@ export class PlantsGallery extends HTMLElement {
     this.replaceChildren(h("p", { class: "empty" }, "Loading the plants…"));
     try {
       const { plants } = await createApi().plants();
-      // The page of a plant turns knobs of states and parameters: a transfer matrix has neither.
-      this.#show(plants.filter(({ kind }) => kind === "nonlinear"));
+      this.#show(plants);
     } catch (error) {
       const retry = h("button", { type: "button", class: "button", onclick: () => void this.#load() }, "Try again");
       this.replaceChildren(h("p", { class: "empty" }, `The plants could not be loaded. ${error instanceof Error ? error.message : ""} `, retry));
@@ -55,7 +54,7 @@ function wordsOf({ title, summary, group, notes, inputs, outputs, states }) {
 }
 
 /** @param {PlantSummary} plant */
-function plantCard({ id, title, summary, notes, inputs, outputs, states, drawing, values }) {
+function plantCard({ id, kind, title, summary, notes, inputs, outputs, states, drawing, values }) {
   const picture = h("div", { class: "plant-card-picture", "aria-hidden": "true" });
   if (drawing) {
     const schematic = document.createElement("plant-schematic");
@@ -64,7 +63,7 @@ function plantCard({ id, title, summary, notes, inputs, outputs, states, drawing
     schematic.values = values;
     picture.append(schematic);
   }
-  const order = `order ${states.length}`;
+  const order = kind === "transfer-matrix" ? "transfer matrix" : `order ${states.length}`;
   const [first = ""] = summary.split(/(?<=\.)\s/);
   return h(
     "li",

@@ -23,6 +23,9 @@
  */
 
 /** @typedef {{path: string, latex: string, mathml: string}} Equation */
+/** @typedef {{K: number, leads: number[], lags: number[], theta: number}} MatrixEntry  K (lead s + 1).../((lag s + 1)...) e^(-theta s) */
+/** @typedef {{name: string, unit: string, meaning: string}} MatrixSignal */
+/** @typedef {{id: string, time_unit: string, source: string, inputs: MatrixSignal[], outputs: MatrixSignal[], entries: MatrixEntry[][]}} MatrixDocument */
 /** @typedef {{kind: "nonlinear" | "transfer-matrix", document: PlantDocument, equations: Equation[], group: string, drawing: object | null, values: Values, time_scale: number | null}} PlantAnswer */
 /**
  * @typedef {{id: string, kind: "nonlinear" | "transfer-matrix", title: string, summary: string, group: string, notes: string, time_unit: string, inputs: string[], states: string[],

@@ -1,11 +1,14 @@
 /** One plant: its drawing, moved by a run that goes on, its curves, and what can be worked out about it. */
 
+/** @import {MatrixDocument} from "../core/plant-types.js" */
+
 import { createApi } from "../core/api.js";
 import { createPlantBench } from "../core/plant-bench.js";
 import { paceOf, round125 } from "../core/plant-pace.js";
 import { createPlantRun } from "../core/plant-run.js";
 import { h } from "../components/dom.js";
 import "../components/site-header.js";
+import * as entries from "../panels/matrix-entries.js";
 import * as balance from "../panels/plant-balance.js";
 import * as experiment from "../panels/plant-experiment.js";
 import * as facts from "../panels/plant-facts.js";
@@ -18,10 +21,16 @@ import * as picture from "../panels/plant-picture.js";
 import * as plot from "../panels/plant-plot.js";
 import * as profile from "../panels/plant-profile.js";
 import * as steady from "../panels/plant-steady.js";
+import * as steps from "../panels/transfer-matrix.js";
 
 /** Seconds in which the curves of an experiment are played. */
 const PLAYED_IN = 10;
 const LONGEST_TICK = 0.1;
+
+/** @param {HTMLElement} main */
+function enlarge(main) {
+  main.addEventListener("panel-expand", (event) => /** @type {HTMLElement} */ (event.target).classList.toggle("enlarged"));
+}
 
 /** @param {string} id @param {HTMLElement} main */
 async function open(id, main) {
@@ -34,16 +43,22 @@ async function open(id, main) {
     main.replaceChildren(h("h1", {}, "No such plant"), h("p", { class: "empty" }, `${message}${hint ? `: ${hint}` : ""}. `, h("a", { href: "/plants" }, "See all plants")));
     return;
   }
-  if (answer.kind !== "nonlinear") {
-    const where = h("a", { href: `/api/v1/plants/${encodeURIComponent(id)}` }, "its document");
-    main.replaceChildren(h("h1", {}, answer.document.title), h("p", {}, answer.document.summary ?? ""), h("p", {}, "This plant is a matrix of transfer functions, which the API simulates: ", where, "."));
+  const { title, summary, notes } = answer.document;
+  document.title = `${title} · looplab`;
+  const head = h("header", { class: "plant-head" }, h("p", { class: "plant-group" }, h("a", { href: "/plants" }, "Plants"), ` › ${answer.group}`), h("h1", {}, title), h("p", {}, summary ?? ""), notes ? h("p", { class: "facts" }, `Lecture notes §${notes}`) : null);
+  if (answer.kind === "transfer-matrix") {
+    const matrix = /** @type {MatrixDocument} */ (/** @type {unknown} */ (answer.document));
+    head.append(h("p", { class: "facts" }, `Source: ${matrix.source}`));
+    const panels = h("div", { class: "plant-analyses" });
+    main.replaceChildren(head, panels);
+    entries.mount(panels, matrix, answer.equations);
+    steps.mount(panels, matrix, api);
+    enlarge(main);
     return;
   }
   const bench = createPlantBench(answer, location.search);
   const pace = paceOf(answer.time_scale, bench.timeUnit);
   const { model } = bench;
-  document.title = `${model.title} · looplab`;
-  const head = h("header", { class: "plant-head" }, h("p", { class: "plant-group" }, h("a", { href: "/plants" }, "Plants"), ` › ${answer.group}`), h("h1", {}, model.title), h("p", {}, model.summary ?? ""), model.notes ? h("p", { class: "facts" }, `Lecture notes §${model.notes}`) : null);
   const [rail, middle, right, below] = [h("div", { class: "plant-rail" }), h("div", { class: "plant-middle" }), h("div", { class: "plant-right" }), h("div", { class: "plant-below" })];
   main.replaceChildren(head, h("div", { class: "plant-bench" }, middle, right, rail), below);
 
@@ -107,7 +122,7 @@ async function open(id, main) {
       history.replaceState(null, "", query ? `?${query}` : location.pathname);
     }, 200);
   });
-  main.addEventListener("panel-expand", (event) => /** @type {HTMLElement} */ (event.target).classList.toggle("enlarged"));
+  enlarge(main);
   run.reset();
 }
 

@@ -8,6 +8,7 @@ from importlib.resources import files
 from typing import Any
 
 from looplab.plants.library import plant_document
+from looplab.plants.transfer_matrix import transfer_matrix_ids
 
 
 @cache
@@ -27,7 +28,9 @@ def plant_drawing(plant_id: str) -> dict[str, Any] | None:
     ------
     UnknownPlant
     """
-    own: dict[str, Any] | None = plant_document(plant_id).get("schematic")
+    own: dict[str, Any] | None = None
+    if plant_id not in transfer_matrix_ids():
+        own = plant_document(plant_id).get("schematic")
     if own is not None:
         return own
     text = _texts().get(plant_id)

@@ -105,8 +105,8 @@ def _matrix_summary(matrix: TransferMatrix) -> dict[str, Any]:
         "states": [],
         "outputs": [each.name for each in matrix.outputs],
         "operating_points": [],
-        "drawing": None,
-        "values": {},
+        "drawing": plant_drawing(matrix.id),
+        "values": {each.name: each.value for each in (*matrix.inputs, *matrix.outputs)},
     }
 
 
@@ -165,8 +165,8 @@ def _matrix_answer(matrix: TransferMatrix) -> dict[str, Any]:
         "document": transfer_matrix_document(matrix.id),
         "equations": equations,
         "group": group_of(matrix.id),
-        "drawing": None,
-        "values": {},
+        "drawing": plant_drawing(matrix.id),
+        "values": {each.name: each.value for each in (*matrix.inputs, *matrix.outputs)},
         "time_scale": max(lag for row in matrix.entries for entry in row for lag in entry.lags),
     }
 
