@@ -89,7 +89,7 @@ js: need-node node_modules/.stamp-dev
 	node_modules/.bin/oxlint web
 
 pytest: $(VENV)/.stamp-dev node_modules/.stamp-dev
-	$(BIN)/python -m pytest --numprocesses $(PYTEST_WORKERS) --maxprocesses 4 --dist loadfile $(PYTEST_ARGS)
+	$(BIN)/python -m pytest --numprocesses $(PYTEST_WORKERS) --maxprocesses 4 --dist loadfile --no-loadscope-reorder $(PYTEST_ARGS)
 
 # --- upkeep --------------------------------------------------------------------------------------------
 

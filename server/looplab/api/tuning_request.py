@@ -93,7 +93,8 @@ class KnownPlantRequest(RuleOptions):
         """The same for the engine; raises EngineError naming the field."""
         if self.plant is not None:
             with located("plant"):
-                return KnownPlant.of(self.plant.to_engine())
+                plant = self.plant.to_engine()
+            return KnownPlant.of(plant)
         model = point = None
         if self.model is not None:
             with located("model"):

@@ -107,6 +107,15 @@ def test_the_kernel_and_the_method_of_steps_agree(
             assert (np.abs(getattr(response, name)[:n] - values) / size_of(values)).max() <= 1e-9, (name, j)
 
 
+def test_moved_outputs_keep_the_grid_of_the_loop() -> None:
+    """The outputs' shifts make the series larger than the loop's own, which must not change its samples."""
+    lag = TransferFunction((), [-1.0])
+    loop = FeedbackLoop(late(lag, 1.0), late(PID(1.0).to_transfer_function(), 1.0), late(lag, 0.178), late(lag, 0.555))
+    fast = closed_loop_step(loop, 10.0, 201)
+    slow = delay_step(loop_system(loop), float(fast.t[-1]), fast.t.size)
+    np.testing.assert_allclose(fast.setpoint.y, slow.y[:, 0, 0], atol=1e-10)
+
+
 def test_nothing_arrives_before_its_dead_time() -> None:
     loop = FeedbackLoop(
         parse_transfer_function("exp(-0.5s)/(s+1)"),

@@ -29,6 +29,13 @@ def ends_are_marginal(L: TransferFunction, found: GainRanges) -> None:
                 assert abs(1 + value) < 1e-9
 
 
+def test_a_stable_mode_that_cancels_changes_no_range() -> None:
+    """1 + K (s+1)/(s+1): the pole at -1 stays, and K = -1 alone is ill-posed."""
+    found = gain_ranges(TransferFunction([-1.0], [-1.0]), negative=True)
+    assert 1e-4 in found and -1e-4 in found and -2.0 in found
+    assert -1.0 not in found
+
+
 @effort(60)
 @given(systems(order=(1, 6), stable=False, axis=True, excess=0))
 def test_ranges_agree_with_a_dense_sweep_of_eigenvalues(L: TransferFunction) -> None:

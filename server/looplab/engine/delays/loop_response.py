@@ -7,6 +7,7 @@ kernel answers it.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
 from math import ceil, lcm
@@ -16,7 +17,7 @@ import numpy as np
 from looplab.engine.delays.connections import append, connect
 from looplab.engine.delays.one_delay import ShiftEquations
 from looplab.engine.delays.system import DelaySystem
-from looplab.engine.loop.dead_time import TimeGrid, delay_grid, delayed_response
+from looplab.engine.loop.dead_time import DelayGrid, TimeGrid, delay_grid, delayed_response
 from looplab.engine.loop.delay_free import delay_free_response
 from looplab.engine.loop.feedback_loop import FeedbackLoop
 from looplab.engine.loop.shift_series import circle_radius, pieces_of_dead_time
@@ -144,11 +145,11 @@ def loop_step(loop: FeedbackLoop, horizon: float, points: int) -> ClosedLoopStep
         offsets[offsets < 1e-9 * grid.h] = 0.0
         equations = ShiftEquations(twice, offsets.ravel())
         more = int(np.ceil(early / grid.h)) + 1
-        if theta:
-            longer = horizon + more * grid.h
-            count = round((points - 1) * longer / horizon) + 1
-            fine, values = delayed_response(equations.at, equations.starts, theta, longer, count, equations.echo)
-            assert abs(fine.h - grid.h) <= 1e-9 * grid.h
+        if isinstance(grid, DelayGrid):
+            longer = replace(grid, count=grid.count + more)
+            _, values = delayed_response(
+                equations.at, equations.starts, theta, horizon, points, equations.echo, on=longer
+            )
         else:
             A, rows = equations.at(np.ones(1, dtype=complex))
             values = delay_free_response(A[0].real, rows[0].real, equations.starts, grid.h, grid.count + more)

@@ -165,7 +165,13 @@ def _states(F: FloatArray, x0: FloatArray, grid: DelayGrid, count: int) -> Float
 
 
 def delayed_response(
-    symbol: Symbol, x0: FloatArray, theta: float, horizon: float, points: int, neutral: float = 0.0
+    symbol: Symbol,
+    x0: FloatArray,
+    theta: float,
+    horizon: float,
+    points: int,
+    neutral: float = 0.0,
+    on: DelayGrid | None = None,
 ) -> tuple[DelayGrid, FloatArray]:
     r"""Outputs of dx/dt = A(z) x, y = C(z) x with z the shift by theta, zero before t = 0.
 
@@ -182,6 +188,8 @@ def delayed_response(
     neutral : float
         Relative size of the jump that comes back after one dead time, \|Dc Dp\| [-]. From 1 on such a loop is unstable
         at every high frequency; its response is computed as far as jumps stay below 1e14.
+    on : DelayGrid or None
+        The grid, of a caller that has chosen it: horizon and points do not matter then. None chooses one.
 
     Returns
     -------
@@ -201,8 +209,8 @@ def delayed_response(
         return shift_series(symbol, h, grid.samples, terms, neutral, largest)
 
     # Mostly the dead time is short enough for one piece.
-    grid = delay_grid(theta, horizon, points)
-    found = series(grid, LARGEST_EXPONENTIAL)
+    grid = delay_grid(theta, horizon, points) if on is None else on
+    found = series(grid, LARGEST_EXPONENTIAL if on is None else np.inf)
     if found is None:
         grid = delay_grid(theta, horizon, points, pieces_of_dead_time(symbol, theta, circle_radius(neutral)))
         found = series(grid)

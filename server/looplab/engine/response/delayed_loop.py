@@ -132,7 +132,7 @@ def delayed_loop_response(
             hint="use fewer samples, or fewer slices",
         )
     joined = _Joined(equations, signal.omega, offsets)
-    grid, phi = delayed_response(joined, joined.starts, theta, horizon, wanted, neutral)
+    grid, phi = delayed_response(joined, joined.starts, theta, horizon, wanted, neutral, on=grid)
     y = np.zeros(grid.count)
     for jump, start, k in zip(_jumps(signal), first, which, strict=True):
         if start < grid.count:

@@ -12,6 +12,7 @@ from looplab.engine.frequency.nyquist import nyquist_count
 from looplab.engine.stability.cancellation import hidden_modes
 from looplab.engine.stability.notions import pole_text
 from looplab.engine.stability.real_axis import always_real, real_axis_frequencies, typical_size
+from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.transfer_function import TransferFunction
 
 AXIS = 1e-9
@@ -207,6 +208,10 @@ def gain_ranges(L: TransferFunction, negative: bool = False) -> GainRanges:
         return GainRanges(
             (GainRange(below if negative else positive_only, unbounded),), "the loop is cut: the gain changes nothing"
         )
+    reduced, hidden = split_hidden_modes(L)
+    if (hidden.real < -AXIS * np.abs(hidden)).all():
+        # They stay where they are, and are stable.
+        L = reduced
     why = _no_ranges(L)
     if why:
         return GainRanges((), why)
