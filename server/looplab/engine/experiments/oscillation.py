@@ -61,8 +61,7 @@ def oscillation(t: FloatArray, y: FloatArray, dy: FloatArray) -> Oscillation:
     .. [1] D. E. Seborg, T. F. Edgar, D. A. Mellichamp, F. J. Doyle, Process Dynamics and Control, 3rd ed., Wiley 2011,
        sec. 12.5 (continuous cycling).
     """
-    at, found = HermiteCurves(t, y[None], dy[None]).extrema[0]
-    times, values = np.array(at), np.array(found)
+    times, values = HermiteCurves(t, y[None], dy[None]).extrema(0)
     swings = np.abs(np.diff(values))
     if swings.size:
         largest = int(swings.argmax())

@@ -128,6 +128,6 @@ def _half_height(t: FloatArray, y: FloatArray, dy: FloatArray, start: float, end
     """Half of highest less lowest, with the tops between the samples."""
     k = np.flatnonzero((t >= start) & (t <= end))
     k = k[np.append(True, np.diff(t[k]) > 0)]
-    _, tops = HermiteCurves(t[k], y[None, k], dy[None, k]).extrema[0]
+    _, tops = HermiteCurves(t[k], y[None, k], dy[None, k]).extrema(0)
     every = np.append(y[k], tops)
     return 0.5 * float(np.ptp(every))

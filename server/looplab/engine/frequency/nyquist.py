@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from math import ceil, exp, floor, log, pi
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +26,8 @@ OUT_OF_PICTURE = 50.0
 SMALLEST_SEEN = 1e-3
 # A gap of the grid is filled with so many points at most.
 MOST_PARTS = 32
+# The points of a curve are chosen anew for every fourth root of e that the gain moves by.
+LEVELS = 4
 
 
 @dataclass(frozen=True)
@@ -64,17 +67,17 @@ def _start_turns(L: TransferFunction, phase: float) -> int:
     On the way lie the quarter circle around the origin and, where only even powers of s matter, a stretch along the
     axis. Weighted like the rest: 2 for a crossing that has a mirror image, 1 for the start itself; clockwise positive.
     """
-    start = -np.pi if L.origin_gain < 0 else 0.0
+    start = -pi if L.origin_gain < 0 else 0.0
     if not (L.origin_order > 0 or (L.origin_order == 0 and abs(L.origin_gain) > 1.0)):
         return 0
     turns = 0
     # On a positive real s the curve starts on the real axis, at phase 0 or -pi.
-    if start == -np.pi:
+    if start == -pi:
         turns += 1 if phase < start else -1
     low, high = sorted((start, phase))
-    levels = np.arange(np.floor((low + np.pi) / (2 * np.pi)) + 1, np.floor((high + np.pi) / (2 * np.pi)) + 1)
-    levels = levels * 2 * np.pi - np.pi
-    between = int(np.count_nonzero((levels > low + 1e-12) & (levels < high - 1e-12)))
+    # Odd multiples of pi strictly between.
+    first, last = floor((low + 1e-12 + pi) / (2.0 * pi)) + 1, ceil((high - 1e-12 + pi) / (2.0 * pi)) - 1
+    between = max(last - first + 1, 0)
     return turns + (2 * between if phase < start else -2 * between)
 
 
@@ -114,7 +117,7 @@ def nyquist_count(L: TransferFunction) -> NyquistCount:
         return NyquistCount(None, P, None, f"the curve encircles -1 {OFTEN}: the loop is unstable")
     size, direction = found.phase_log_magnitude.tolist(), found.phase_direction.tolist()
     touching = any(abs(m) < ON_CURVE for m in size)
-    touching |= any(abs(p % (2.0 * np.pi) - np.pi) < ON_CURVE for p in found.gain_phase.tolist())
+    touching |= any(abs(p % (2.0 * pi) - pi) < ON_CURVE for p in found.gain_phase.tolist())
     if L.origin_order == 0 and abs(L.origin_gain + 1.0) < ON_CURVE:
         touching = True
     N = int(-2 * sum(d for m, d in zip(size, direction, strict=True) if m > 0))
@@ -123,7 +126,7 @@ def nyquist_count(L: TransferFunction) -> NyquistCount:
     if L.theta == 0 and L.relative_degree == 0 and L.gain < -1.0 and found.start_phase is not None:
         # The curve ends on the real axis left of -1; its mirror image takes over from there.
         last = float(found.grid.phase[-1])
-        level = (2 * np.round((last - np.pi) / (2 * np.pi)) + 1) * np.pi
+        level = (2 * round((last - pi) / (2 * pi)) + 1) * pi
         if last != level:
             N += 1 if last > level else -1
     if touching:
@@ -165,20 +168,26 @@ def nyquist_curve(L: TransferFunction, step: float = 0.03) -> NyquistCurve:
     .. [1] K. J. Astrom, R. M. Murray, Feedback Systems, 2nd ed., Princeton 2021, sec. 10.2.
     """
     grid = crossings(L).grid
-    omega, curve, gain = grid.omega, grid.curve, abs(grid.gain)
+    gain = abs(grid.gain)
     if not gain:
-        return NyquistCurve(omega, np.zeros(omega.size), np.zeros(omega.size))
+        return NyquistCurve(grid.omega, np.zeros(grid.omega.size), np.zeros(grid.omega.size))
+    # Points that suit a gain a little above suit this one too, so that a moved gain mostly finds them chosen.
+    omega, unit = _drawn(grid.curve, ceil(log(gain) * LEVELS), step, L.theta > 0 and L.relative_degree == 0)
+    re, im = unit * gain
+    return NyquistCurve(omega, re, im)
+
+
+@lru_cache(maxsize=64)
+def _drawn(curve: UnitCurve, level: int, step: float, turns_for_ever: bool) -> tuple[FloatArray, FloatArray]:
+    """Points of the unit curve for gains up to exp(level/4): omega, shape (n,), and real and imaginary part, (2, n)."""
+    gain, unit, omega = exp(level / LEVELS), curve.unit, curve.omega
     drawn = curve.size < LARGEST_DRAWN / gain
-    if L.theta and L.relative_degree == 0:
-        drawn &= omega <= max(30.0 * fastest_root(L.unit), 4.0 * np.pi / L.theta)
-    if drawn.all():
-        value = curve.value
-        near, chord = _chords_of(curve)
-    else:
-        omega, value = omega[drawn], curve.value[drawn]
-        near, chord = _chords(value, curve.size[drawn], curve.phase[drawn], L.theta)
+    if turns_for_ever:
+        drawn &= omega <= max(30.0 * fastest_root(unit), 4.0 * pi / unit.theta)
+    omega, value = omega[drawn], curve.value[drawn]
     if not omega.size:
-        return NyquistCurve(omega, value.real.copy(), value.imag.copy())
+        return omega, np.stack([value.real, value.imag])
+    near, chord = _chords(value, curve.size[drawn], curve.phase[drawn], unit.theta)
     near = gain * near
     length = chord * (gain / step) / np.sqrt((near + SMALLEST_SEEN) * (1.0 + near))
     length[near > OUT_OF_PICTURE] *= 0.1
@@ -197,9 +206,9 @@ def nyquist_curve(L: TransferFunction, step: float = 0.03) -> NyquistCurve:
     out, values = np.empty(number.size), np.empty(number.size, dtype=complex)
     out[place], values[place] = omega[at], value[at]
     between = np.exp(np.interp(new.nonzero()[0], place, np.log(omega[at])))
-    out[new], values[new] = between, L.unit.response(between)
-    values *= gain
-    return NyquistCurve(out, values.real.copy(), values.imag.copy())
+    out[new], values[new] = between, unit.response(between)
+    out.setflags(write=False)
+    return out, np.stack([values.real, values.imag])
 
 
 def _chords(value: ComplexArray, size: FloatArray, phase: FloatArray, theta: float) -> tuple[FloatArray, FloatArray]:
@@ -208,8 +217,3 @@ def _chords(value: ComplexArray, size: FloatArray, phase: FloatArray, theta: flo
     if theta:
         chord /= np.minimum(1.0 + np.abs(phase[1:] - phase[0]) / (8.0 * np.pi), 4.0)
     return np.minimum(size[1:], size[:-1]), chord
-
-
-@lru_cache(maxsize=64)
-def _chords_of(curve: UnitCurve) -> tuple[FloatArray, FloatArray]:
-    return _chords(curve.value, curve.size, curve.phase, curve.unit.theta)

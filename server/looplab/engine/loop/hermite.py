@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -12,32 +10,37 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 Index = npt.NDArray[np.intp]
 
-# Gauss-Legendre nodes and weights on [0, 1]: exact to degree 7, the square of a cubic included.
-_NODES, _WEIGHTS = (0.5 * v for v in np.polynomial.legendre.leggauss(4))
-_NODES = _NODES + 0.5
-# Coefficients of a cubic to its values at the nodes, and those to integrals of y and x y.
-_TO_NODES = np.vander(_NODES, 4, increasing=True)
-_TO_MOMENTS = np.array([_WEIGHTS, _WEIGHTS * _NODES])
-# Integrals over [0, 1] of the powers 1, x, x^2, x^3, and of x times them, shape (4, 2, 1).
-_POWERS = np.array([1.0 / np.arange(1.0, 5.0), 1.0 / np.arange(2.0, 6.0)]).T[:, :, None]
+# From the coefficients of a cubic p: the integrals over [0, 1] of p and of x p, and four numbers whose squares add up to
+# that of p^2 (the Cholesky factor of the Hilbert matrix).
+_POWERS = 1.0 / (np.arange(1.0, 5.0) + np.arange(2.0)[:, None])
+_TO_INTEGRALS = np.vstack([_POWERS, np.linalg.cholesky(1.0 / (np.arange(1.0, 5.0) + np.arange(4.0)[:, None])).T])
+# From the same: p(1); the coefficients of p and p' by powers of x; those of the integrals of p and x p up to x.
+_AT_END = np.ones((1, 4))
+_WITH_SLOPE = np.stack([np.eye(4), np.diag([1.0, 2.0, 3.0], 1)], axis=1).reshape(8, 4)
+_UP_TO = np.stack([np.diag(row) for row in _POWERS], axis=1).reshape(8, 4)
+_FOR_ROOTS = np.vstack([_AT_END, _WITH_SLOPE, _UP_TO])
 
 
-def _split_moments(cubics: FloatArray) -> FloatArray:
-    """Integrals of |p| and x |p| over [0, 1] of cubics p that change sign there once, shape (2, m)."""
-    a, b, c, d = cubics
-    twice, thrice = 2.0 * c, 3.0 * d
-    step = x = a / (a - (a + b + c + d))
+def _before_root(cubics: FloatArray) -> FloatArray:
+    """Integrals of p and x p from 0 to the root in [0, 1] of cubics p that change sign there once, shape (2, m)."""
+    forms = _FOR_ROOTS @ cubics
+    start = cubics[0]
+    x = start / (start - forms[0])
+    a, b, c, d = forms[1:9].reshape(4, 2, -1)
     for _ in range(2):
-        step = (a + x * (b + x * (c + x * d))) / (b + x * (twice + x * thrice))
+        value, slope = a + x * (b + x * (c + x * d))
+        step = value / slope
         x = x - step
     # An error of x counts only by its square here; where two steps are not enough one careful root is found.
-    for i in (~((np.abs(step) <= 1e-4) & (x >= 0.0) & (x <= 1.0))).nonzero()[0].tolist():
-        x[i] = _cubic_root(*cubics[:, i].tolist())
-    parts = _POWERS * cubics[:, None]
-    a, b, c, d = parts
+    safe = np.abs(step) <= 1e-4
+    safe &= np.abs(x - 0.5) <= 0.5
+    if not safe.all():
+        for i in (~safe).nonzero()[0].tolist():
+            x[i] = _cubic_root(*cubics[:, i].tolist())
+    a, b, c, d = forms[9:].reshape(4, 2, -1)
     before = x * (a + x * (b + x * (c + x * d)))
     before[1] *= x
-    return np.abs(before) + np.abs(parts.sum(axis=0) - before)
+    return np.asarray(before)
 
 
 def _cubic_root(a: float, b: float, c: float, d: float) -> float:
@@ -117,57 +120,56 @@ class HermiteCurves:
             x = _turning_points(b, c, d)
         return flat, x, a + x * (b + x * (c + x * d)), a
 
-    @cached_property
-    def extrema(self) -> list[tuple[list[float], list[float]]]:
-        """Of each row times and values of the turning points, corners at samples included, increasing in time."""
+    def extrema(self, row: int) -> tuple[FloatArray, FloatArray]:
+        """Times and values of a row's turning points, corners at samples included, increasing in time."""
         flat, x, values, _ = self._turns
-        row, piece = np.divmod(flat, self.h.size)
-        times = self.t[piece] + x * self.h[piece]
-        ends = row.searchsorted(np.arange(self.y.shape[0] + 1)).tolist()
-        out = []
-        for i, mine in enumerate(slice(*pair) for pair in pairwise(ends)):
-            at, value = times[mine], values[mine]
-            if self._corner is not None:
-                corner = 1 + np.flatnonzero(self._corner[i])
-                at, value = np.append(at, self.t[corner]), np.append(value, self.y[i, corner])
-                order = at.argsort(kind="stable")
-                at, value = at[order], value[order]
-            out.append((at.tolist(), value.tolist()))
-        return out
+        m = self.h.size
+        first, stop = flat.searchsorted((row * m, (row + 1) * m)).tolist()
+        piece = flat[first:stop] - row * m
+        at, value = self.t[piece] + x[first:stop] * self.h[piece], values[first:stop]
+        if self._corner is not None:
+            corner = 1 + np.flatnonzero(self._corner[row])
+            at, value = np.append(at, self.t[corner]), np.append(value, self.y[row, corner])
+            order = at.argsort(kind="stable")
+            at, value = at[order], value[order]
+        return at, value
 
-    @cached_property
-    def total_variation(self) -> list[float]:
-        """Of each row the sum of all ups and downs, turning points between the samples included."""
+    def total_variation(self, first: int) -> list[float]:
+        """Of each row from ``first`` on the sum of all ups and downs, turning points between the samples included."""
         flat, _, values, start = self._turns
+        m = self.h.size
+        begin = int(flat.searchsorted(first * m))
+        flat, rise = flat[begin:], values[begin:] - start[begin:]
         chord = self._chord.take(flat)
-        rise = values - start
         detour = np.abs(rise) + np.abs(chord - rise) - np.abs(chord)
-        more = np.bincount(flat // self.h.size, weights=detour, minlength=self.y.shape[0])
-        total: list[float] = (np.abs(self._chord).sum(axis=1) + more).tolist()
+        more = np.bincount(flat // m - first, weights=detour, minlength=self.y.shape[0] - first)
+        total: list[float] = (np.abs(self._chord[first:]).sum(axis=1) + more).tolist()
         return total
 
-    def absolute_integrals(self, levels: Sequence[float]) -> list[tuple[float, float, float]]:
-        """Of the first rows, one for each level, the integrals of |e|, e^2 and t|e| over the record, e = level - y.
+    def absolute_integrals(self, count: int) -> list[tuple[float, float, float]]:
+        """Of the first rows the integrals of |y|, y^2 and t|y| over the record.
 
-        Pieces are split where e changes sign.
+        Pieces are split where y changes sign.
         """
-        k, m = len(levels), self.h.size
-        level = np.array(levels)[:, None]
-        cubics = self.cubics[:, :k].copy()
-        cubics[0] -= level
-        cubics = cubics.reshape(4, -1)
-        error = _TO_NODES @ cubics
-        moments = _TO_MOMENTS @ np.abs(error)
-        above = self.y[:k] > level
+        m = self.h.size
+        cubics = self.cubics.reshape(4, -1)[:, : count * m]
+        parts = _TO_INTEGRALS @ cubics
+        whole = parts[:2]
+        above = self.y[:count] > 0.0
         flat = (above[:, 1:] != above[:, :-1]).ravel().nonzero()[0]
         if flat.size:
             with np.errstate(all="ignore"):
-                moments[:, flat] = _split_moments(cubics.take(flat, axis=1))
-        whole, moment = moments.reshape(2, k, m)
-        whole *= self.h
-        ise = (_WEIGHTS @ np.square(error, out=error)).reshape(k, m) @ self.h
-        iae, itae = whole.sum(axis=1), whole @ self.t[:-1] + moment @ (self.h * self.h)
-        return list(zip(iae.tolist(), ise.tolist(), itae.tolist(), strict=True))
+                before = _before_root(cubics.take(flat, axis=1))
+            split = np.abs(before)
+            split += np.abs(whole.take(flat, axis=1) - before)
+        np.abs(whole, out=whole)
+        if flat.size:
+            whole[:, flat] = split
+        np.square(parts[2:], out=parts[2:])
+        parts = parts.reshape(6, count, m)
+        ia, _, *squares = (parts @ self.h).tolist()
+        ita = parts[0] @ (self.h * self.t[:-1]) + parts[1] @ (self.h * self.h)
+        return list(zip(ia, map(sum, zip(*squares, strict=True)), ita.tolist(), strict=True))
 
     def _crossing(self, row: int, piece: int, level: float) -> float:
         a, b, c, d = self.cubics[:, row, piece].tolist()

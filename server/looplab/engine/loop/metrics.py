@@ -56,49 +56,46 @@ class StepMetrics:
     reasons: dict[str, str] = field(default_factory=dict)
 
 
-def _overshoots(curves: HermiteCurves, row: int, final: float, direction: float) -> tuple[list[float], list[float]]:
-    """Times and heights of the successive summits beyond the final value."""
-    least = 1e-9 * max(abs(final), 1e-9)
-    heights = [(t, direction * (y - final)) for t, y in zip(*curves.extrema[row], strict=True)]
-    beyond = [(t, height) for t, height in heights if height > least]
-    return [t for t, _ in beyond], [height for _, height in beyond]
-
-
-def _shape(curves: HermiteCurves, row: int, final: float, out: Numbers, why: dict[str, str]) -> None:
+def _shape(curves: HermiteCurves, row: int, setpoint: float, final: float, out: Numbers, why: dict[str, str]) -> None:
     """Peak, overshoot, rise, settling and decay of a response that moves from 0 to ``final``."""
-    direction = copysign(1.0, final)
-    t_top, height = _overshoots(curves, row, final, direction)
-    if height:
-        highest = max(height)
-        out["peak"], out["t_peak"] = final + direction * highest, t_top[height.index(highest)]
-        out["overshoot_pct"] = 100.0 * highest / abs(final)
+    direction, end = copysign(1.0, final), final - setpoint
+    times, turns = curves.extrema(row)
+    beyond = direction * (turns - end)
+    summits = (beyond > 1e-9 * max(abs(final), 1e-9)).nonzero()[0]
+    if summits.size:
+        height = beyond[summits]
+        best = int(height.argmax())
+        out["peak"], out["t_peak"] = final + direction * float(height[best]), float(times[summits[best]])
+        out["overshoot_pct"] = 100.0 * float(height[best]) / abs(final)
     else:
         out["overshoot_pct"] = 0.0
-        out["peak"] = float(direction * (direction * curves.y[row]).max())
+        out["peak"] = setpoint + float(direction * (direction * curves.y[row]).max())
         why["t_peak"] = "undefined: the response does not pass its final value"
-    low, high = (curves.first_crossing(row, part * final) for part in (0.1, 0.9))
+    low, high = (curves.first_crossing(row, part * final - setpoint) for part in (0.1, 0.9))
     if low is not None and high is not None:
         out["t_rise"] = high - low
     else:
         why["t_rise"] = "undefined: the response does not reach 90 % of its final value within the horizon"
-    out["t_settle"] = curves.last_outside(row, final, BAND * abs(final))
+    out["t_settle"] = curves.last_outside(row, end, BAND * abs(final))
     if out["t_settle"] is None:
         why["t_settle"] = "undefined: not within 2 % of the final value at the end of the horizon"
-    if len(height) >= 2:
-        out["decay_ratio"] = height[1] / height[0]
+    if summits.size >= 2:
+        out["decay_ratio"] = float(height[1] / height[0])
     else:
         why["decay_ratio"] = "undefined: there are not two overshoots within the horizon"
 
 
-def _disturbed(curves: HermiteCurves, row: int, final: float, out: Numbers, why: dict[str, str]) -> None:
+def _disturbed(
+    curves: HermiteCurves, row: int, setpoint: float, final: float, out: Numbers, why: dict[str, str]
+) -> None:
     """Peak and settling of a response that ends near where it began (a load step under control)."""
-    t, y = curves.extrema[row]
-    ends = [0, -1]
-    out["t_peak"], peak = max(
-        zip([*t, *curves.t[ends].tolist()], [*y, *curves.y[row, ends].tolist()], strict=True), key=lambda at: abs(at[1])
-    )
+    times, turns = curves.extrema(row)
+    t = np.concatenate([times, curves.t[[0, -1]]])
+    y = np.concatenate([turns, curves.y[row, [0, -1]]]) + setpoint
+    at = int(np.abs(y).argmax())
+    out["t_peak"], peak = float(t[at]), float(y[at])
     out["peak"], span = peak, abs(peak)
-    out["t_settle"] = curves.last_outside(row, final, BAND * span) if span else 0.0
+    out["t_settle"] = curves.last_outside(row, final - setpoint, BAND * span) if span else 0.0
     if out["t_settle"] is None:
         why["t_settle"] = "undefined: not within 2 % of the largest deviation at the end of the horizon"
     for name in ("overshoot_pct", "t_rise"):
@@ -112,11 +109,15 @@ def _judge(responses: Sequence[Response], setpoints: Sequence[float], stable: bo
         return [
             StepMetrics(reasons=dict.fromkeys(NUMBERS, "undefined: the closed loop is not stable")) for _ in responses
         ]
-    values = np.concatenate([*(r.y for r in responses), *(r.u for r in responses)])
-    slopes = np.concatenate([*(r.dy for r in responses), *(r.du for r in responses)])
-    t, rows = responses[0].t, 2 * len(responses)
-    curves = HermiteCurves(t, values.reshape(rows, -1), slopes.reshape(rows, -1))
-    integrals = curves.absolute_integrals(setpoints)
+    count = len(responses)
+    values = np.concatenate([*(r.y for r in responses), *(r.u for r in responses)]).reshape(2 * count, -1)
+    slopes = np.concatenate([*(r.dy for r in responses), *(r.du for r in responses)]).reshape(2 * count, -1)
+    # The first rows are the errors y - r.
+    for row, setpoint in zip(values, setpoints, strict=False):
+        if setpoint:
+            row -= setpoint
+    curves = HermiteCurves(responses[0].t, values, slopes)
+    integrals, variation = curves.absolute_integrals(count), curves.total_variation(count)
     judged = []
     for row, (response, setpoint) in enumerate(zip(responses, setpoints, strict=True)):
         out: Numbers = dict.fromkeys(NUMBERS)
@@ -127,12 +128,12 @@ def _judge(responses: Sequence[Response], setpoints: Sequence[float], stable: bo
         else:
             out["final_value"], out["offset"] = final, setpoint - final
             shape = _shape if setpoint and abs(final) > 1e-9 else _disturbed
-            shape(curves, row, final, out, why)
+            shape(curves, row, setpoint, final, out, why)
         out["IAE"], out["ISE"], out["ITAE"] = integrals[row]
         if final is not None and abs(setpoint - final) > 1e-9:
             for name in ("IAE", "ISE", "ITAE"):
                 why[name] = "grows with the horizon: an offset remains"
-        out["TV"] = abs(float(response.u[0])) + curves.total_variation[row + len(responses)]
+        out["TV"] = abs(float(response.u[0])) + variation[row]
         judged.append(StepMetrics(**out, reasons=why))
     return judged
 

@@ -70,7 +70,7 @@ def loop_metrics(
         why = dict.fromkeys(("IAE", "ISE", "ITAE", *_STEP_NUMBERS), "undefined: there are fewer than three samples")
         return LoopMetrics(None, None, None, **out, reasons=why)
     e = setpoint.values(t) - y
-    (integrals,) = HermiteCurves(t - t[0], e[None], np.gradient(e, t)[None]).absolute_integrals([0.0])
+    (integrals,) = HermiteCurves(t - t[0], e[None], np.gradient(e, t)[None]).absolute_integrals(1)
     if cut:
         return LoopMetrics(*integrals, **out, reasons=dict.fromkeys(_STEP_NUMBERS, "undefined: the simulation was cut"))
     found, reasons = _step(t, y, u, setpoint)
