@@ -12,7 +12,7 @@ import numpy.typing as npt
 from looplab.engine.frequency.crossings import OFTEN, crossings
 from looplab.engine.frequency.nyquist import nyquist_count
 from looplab.engine.frequency.response import AXIS_GAP
-from looplab.engine.frequency.sampled import Sampled
+from looplab.engine.frequency.sampled import Sampled, UnitCurve
 from looplab.engine.frequency.scalar import newton_in_bracket, scalar_loop
 from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.transfer_function import TransferFunction
@@ -59,33 +59,43 @@ class Margins:
 _NAMES = ("GM", "GM_dB", "omega_180", "PM_deg", "omega_c", "delay_margin", "Ms", "omega_Ms", "Mt", "omega_Mt")
 
 
+@lru_cache(maxsize=64)
+def _sensitivity_terms(curve: UnitCurve) -> tuple[FloatArray, ...]:
+    r"""What 1 + L and the slopes of \|S\| and \|T\| are made of, apart from powers of the gain, shape (n,) each.
+
+    With q = omega L'/L they are Im(T q) for ln\|S\| and -Im(S q) for ln\|T\| over ln omega; times \|1 + L\|^2 these are
+    k Im(L q) + k^2 \|L\|^2 Im q and -(Im q + k Im(q conj L)) for the gain k.
+    """
+    with np.errstate(all="ignore"):
+        value, q = curve.value, curve.rate
+        square = np.square(curve.size)
+        terms = (2.0 * value.real, square, (value * q).imag, square * q.imag, q.imag, (q * value.conj()).imag)
+    return tuple(map(np.ascontiguousarray, terms))
+
+
 def _peaks_on(grid: Sampled) -> list[tuple[float, float]]:
     """Largest |S| and largest |T| on a grid, refined where their slopes change sign: (value, omega) of each."""
-    omega = grid.omega
-    with np.errstate(all="ignore"):
-        factors = np.empty((2, omega.size), dtype=complex)
-        np.reciprocal(1.0 + grid.value, out=factors[0])
-        np.multiply(grid.value, factors[0], out=factors[1])
-        sizes = np.abs(factors)
-        # Slopes over ln omega: Im(T q) of ln|S| and -Im(S q) of ln|T|, with q = omega L'/L.
-        slopes = (factors[::-1] * grid.curve.rate).imag
-        slopes[1] *= -1.0
-        summit = (slopes[:, :-1] > 0) & (slopes[:, 1:] <= 0)
-    sizes[np.isnan(sizes)] = 0.0
-    loop, gain = scalar_loop(grid.curve.unit), abs(grid.gain)
+    omega, k = grid.omega, abs(grid.gain)
+    twice_real, square, first, second, third, fourth = _sensitivity_terms(grid.curve)
+    loop = scalar_loop(grid.curve.unit)
     out = []
-    for row, part in enumerate("ST"):
-        size = sizes[row]
-        best = int(size.argmax())
-        top, where = float(size[best]), float(omega[best])
-        at = np.flatnonzero(summit[row])
+    with np.errstate(all="ignore"):
+        away = np.abs(1.0 + k * (twice_real + k * square))
+        both = (("S", 1.0 / away, first + k * second > 0.0), ("T", square / away, third + k * fourth < 0.0))
+    for part, size, rising in both:
+        if not grid.curve.is_finite:
+            size[np.isnan(size)] = 0.0
+        summit = (rising[:-1] > rising[1:]).nonzero()[0]
+        where = float(omega[size.argmax()])
+        top = loop.peak_size(log(where), k, part)
         # Only the highest summits can win; the rest need no refinement.
-        if at.size > 8:
-            at = at[np.argsort(np.maximum(size[at], size[at + 1]))[-8:]]
-        for i in at.tolist():
-            slope = partial(loop.sensitivity_slope, gain=gain, part=part)
-            x = newton_in_bracket(slope, log(omega[i]), log(omega[i + 1]), slopes[row, i : i + 2].tolist())
-            peak = loop.peak_size(x, gain, part)
+        if summit.size > 8:
+            summit = summit[np.argsort(np.maximum(size[summit], size[summit + 1]))[-8:]]
+        slope = partial(loop.sensitivity_slope, gain=k, part=part)
+        for a, b in zip(omega[summit].tolist(), omega[summit + 1].tolist(), strict=True):
+            low, high = log(a), log(b)
+            x = newton_in_bracket(slope, low, high, (slope(low)[0], slope(high)[0]))
+            peak = loop.peak_size(x, k, part)
             if peak > top:
                 top, where = peak, exp(x)
         out.append((top, where))

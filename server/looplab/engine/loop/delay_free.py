@@ -15,9 +15,8 @@ LARGEST_TAYLOR = 16.0
 
 
 def _exponential(A: FloatArray) -> FloatArray:
-    if np.abs(A).sum(axis=-1).max(initial=0.0) <= LARGEST_TAYLOR:
-        return expm_batch(A)
-    return np.asarray(expm(A))
+    norm = float(np.abs(A).sum(axis=-1).max(initial=0.0))
+    return expm_batch(A, norm) if norm <= LARGEST_TAYLOR else np.asarray(expm(A))
 
 
 def delay_free_response(
@@ -66,6 +65,8 @@ def delay_free_response(
         done += more
         if done < m:
             power = power @ power
-    by_start = states.reshape(m, c, n).transpose(1, 0, 2)[:, None]
-    out = by_start @ rows.reshape(q, p, n).transpose(1, 2, 0)
+    # One product of all starts with all rows, then each output's samples side by side.
+    by_start = states.reshape(m, c, n).transpose(1, 0, 2).reshape(c * m, n)
+    by_output = rows.reshape(q, p, n).transpose(1, 0, 2).reshape(p * q, n)
+    out = (by_start @ by_output.T).reshape(c, m, p, q).transpose(0, 2, 1, 3)
     return out.reshape(c, p, m * q)[:, :, :count].transpose(2, 1, 0)

@@ -10,8 +10,8 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 Index = npt.NDArray[np.intp]
 
-# From the coefficients of a cubic p: the integrals over [0, 1] of p and of x p, and four numbers whose squares add up to
-# that of p^2 (the Cholesky factor of the Hilbert matrix).
+# From the coefficients of a cubic p: the integrals over [0, 1] of p and of x p, and four numbers whose squares add up
+# to that of p^2 (the Cholesky factor of the Hilbert matrix).
 _POWERS = 1.0 / (np.arange(1.0, 5.0) + np.arange(2.0)[:, None])
 _TO_INTEGRALS = np.vstack([_POWERS, np.linalg.cholesky(1.0 / (np.arange(1.0, 5.0) + np.arange(4.0)[:, None])).T])
 # From the same: p(1); the coefficients of p and p' by powers of x; those of the integrals of p and x p up to x.

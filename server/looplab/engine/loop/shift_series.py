@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
-from math import factorial
+from math import ceil, factorial, log2
 from typing import TypeVar
 
 import numpy as np
@@ -59,11 +59,11 @@ def _norm(matrices: Matrices) -> float:
     return float(np.abs(matrices).sum(axis=-1).max(initial=0.0))
 
 
-def expm_batch(matrices: Matrices) -> Matrices:
+def expm_batch(matrices: Matrices, norm: float | None = None) -> Matrices:
     """exp of matrices, shape (..., n, n), real or complex, by scaling, a Taylor polynomial and squaring."""
-    norm = _norm(matrices)
-    squarings = max(0, int(np.ceil(np.log2(norm))) + 1) if norm > 0.5 else 0
-    out = _taylor(matrices / 2.0**squarings)
+    norm = _norm(matrices) if norm is None else norm
+    squarings = max(0, ceil(log2(norm)) + 1) if norm > 0.5 else 0
+    out = _taylor(matrices * 0.5**squarings)
     for _ in range(squarings):
         out = out @ out
     return out

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import expm
-from scipy.linalg.lapack import dgebal
 
 from looplab.engine.errors import InvalidInput
 from looplab.engine.loop.dead_time import TimeGrid, delay_grid, delayed_response
 from looplab.engine.loop.delay_free import delay_free_response
+from looplab.engine.loop.equations import loop_equations
 from looplab.engine.loop.feedback_loop import FeedbackLoop
 from looplab.engine.systems.realization import realize
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
 
 MIN_POINTS, MAX_POINTS = 20, 5000
 SHORTEST_DEAD_TIME = 1e-6
@@ -52,81 +50,6 @@ class ClosedLoopStep:
     horizon: float
     setpoint: Response
     load: Response
-
-
-class LoopEquations:
-    """State equations of the loop, [x_plant, x_controller, r, d], as a function of the shift z of the dead time."""
-
-    def __init__(self, loop: FeedbackLoop) -> None:
-        P, C, F = realize(loop.plant), realize(loop.C), loop.feedforward
-        p, c = P.B.size, C.B.size
-        n = p + c + 2
-        self.base = np.zeros((n, n))
-        self.base[:p, :p] = P.A
-        self.base[p : p + c, p : p + c] = C.A
-        self.base[p : p + c, n - 2] = C.B
-        self.u0 = np.zeros(n)
-        self.u0[p : p + c] = C.C
-        self.u0[n - 2] = C.D + F
-        self.base[:p] += P.B[:, None] * self.u0
-        self.base[:p, n - 1] += P.B
-        self.b_y = np.concatenate([-P.B * C.D, -C.B, [0.0, 0.0]])
-        # Plant output before its dead time: g x / (1 + Dp Dc z).
-        self.g = P.D * self.u0
-        self.g[:p] += P.C
-        self.g[n - 1] += P.D
-        self.Dc, self.DpDc = C.D, P.D * C.D
-        self._balance(n - 2)
-
-    def _balance(self, states: int) -> None:
-        """Scale the states so that rows and columns of A are of one size: exponentials keep their digits."""
-        if not states:
-            return
-        size = np.abs(self.base) + np.abs(self.b_y)[:, None] * np.abs(self.g)
-        _, _, _, scale, _ = dgebal(size[:states, :states], scale=1, permute=0)
-        self.base[:states] /= scale[:, None]
-        self.base[:, :states] *= scale
-        self.b_y[:states] /= scale
-        self.g[:states] *= scale
-        self.u0[:states] *= scale
-
-    def at(self, z: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-        """A(z), shape (k, n, n), and the rows of y, u, dy/dt, du/dt, shape (k, 4, n), for z of shape (k,)."""
-        y = (z / (1.0 + self.DpDc * z))[:, None] * self.g
-        u = self.u0 - self.Dc * y
-        A = self.base + self.b_y[:, None] * y[:, None, :]
-        rows = np.empty((z.size, 4, self.g.size), dtype=complex)
-        rows[:, 0], rows[:, 1] = y, u
-        rows[:, 2:] = rows[:, :2] @ A
-        return A, rows
-
-    @cached_property
-    def without_shift(self) -> tuple[FloatArray, FloatArray]:
-        """A, shape (n, n), and the rows of y, u, dy/dt, du/dt, shape (4, n), of the loop without dead time."""
-        y = self.g / (1.0 + self.DpDc)
-        u = self.u0 - self.Dc * y
-        A = self.base + self.b_y[:, None] * y
-        rows = np.empty((4, y.size))
-        rows[0], rows[1] = y, u
-        rows[2:] = rows[:2] @ A
-        return A, rows
-
-    def closed_loop_matrix(self) -> FloatArray:
-        """A of the autonomous loop without dead time, shape (n, n): plant and controller states only."""
-        return self.without_shift[0][:-2, :-2]
-
-    @property
-    def starts(self) -> FloatArray:
-        """Initial states of the setpoint and load steps, shape (n, 2)."""
-        x0 = np.zeros((self.base.shape[0], 2))
-        x0[-2, 0] = x0[-1, 1] = 1.0
-        return x0
-
-
-@lru_cache(maxsize=32)
-def loop_equations(loop: FeedbackLoop) -> LoopEquations:
-    """The equations of a loop, cached by content."""
-    return LoopEquations(loop)
 
 
 def _check(horizon: float, points: int, theta: float) -> None:
@@ -221,7 +144,8 @@ def closed_loop_step(loop: FeedbackLoop, horizon: float, points: int = 500) -> C
     t, why = grid.t, f"the response grows beyond {LARGEST_VALUE:g}: the loop is unstable"
     final_r, final_d = _final_values(loop)
     setpoint, load = out.transpose(2, 1, 0)
-    if np.abs(out[:, :2]).max() < LARGEST_VALUE:
+    values = out[:, :2]
+    if -LARGEST_VALUE < values.min() and values.max() < LARGEST_VALUE:
         both = (Response(t, y, u, dy, du, final) for (y, u, dy, du), final in ((setpoint, final_r), (load, final_d)))
         return ClosedLoopStep(t, horizon, *both)
     return ClosedLoopStep(t, horizon, _cut(t, setpoint, final_r, why), _cut(t, load, final_d, why))

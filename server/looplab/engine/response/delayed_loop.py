@@ -12,9 +12,10 @@ import numpy as np
 
 from looplab.engine.errors import InvalidInput
 from looplab.engine.loop.dead_time import DelayGrid, delay_grid, delayed_response
+from looplab.engine.loop.equations import LoopEquations, loop_equations
 from looplab.engine.loop.feedback_loop import FeedbackLoop
 from looplab.engine.loop.shift_series import circle_radius, expm_batch, pieces_of_dead_time
-from looplab.engine.loop.step_response import SHORTEST_DEAD_TIME, LoopEquations, loop_equations
+from looplab.engine.loop.step_response import SHORTEST_DEAD_TIME
 from looplab.engine.response.inputs import InputSignal
 from looplab.engine.systems.polynomial import ComplexArray, FloatArray
 

@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from looplab.engine.loop.step_response import LoopEquations
+from looplab.engine.loop.equations import LoopEquations
 
 FloatArray = npt.NDArray[np.float64]
 
