@@ -113,9 +113,9 @@ def _judge(responses: Sequence[Response], setpoints: Sequence[float], stable: bo
     values = np.concatenate([*(r.y for r in responses), *(r.u for r in responses)]).reshape(2 * count, -1)
     slopes = np.concatenate([*(r.dy for r in responses), *(r.du for r in responses)]).reshape(2 * count, -1)
     # The first rows are the errors y - r.
-    for row, setpoint in zip(values, setpoints, strict=False):
+    for errors, setpoint in zip(values, setpoints, strict=False):
         if setpoint:
-            row -= setpoint
+            errors -= setpoint
     curves = HermiteCurves(responses[0].t, values, slopes)
     integrals, variation = curves.absolute_integrals(count), curves.total_variation(count)
     judged = []

@@ -145,7 +145,7 @@ def closed_loop_step(loop: FeedbackLoop, horizon: float, points: int = 500) -> C
     final_r, final_d = _final_values(loop)
     setpoint, load = out.transpose(2, 1, 0)
     values = out[:, :2]
-    if -LARGEST_VALUE < values.min() and values.max() < LARGEST_VALUE:
+    if values.min() > -LARGEST_VALUE and values.max() < LARGEST_VALUE:
         both = (Response(t, y, u, dy, du, final) for (y, u, dy, du), final in ((setpoint, final_r), (load, final_d)))
         return ClosedLoopStep(t, horizon, *both)
     return ClosedLoopStep(t, horizon, _cut(t, setpoint, final_r, why), _cut(t, load, final_d, why))
