@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from contextlib import suppress
 from functools import lru_cache
-from math import ceil, floor, isfinite, log10
+from math import ceil, floor, isfinite, log10, pi
 
 import numpy as np
 import numpy.typing as npt
@@ -44,15 +45,28 @@ def phase_rad(system: TransferFunction, omega: FloatArray) -> FloatArray:
     ----------
     .. [1] K. J. Åström, R. M. Murray, Feedback Systems, 2nd ed., Princeton University Press (2021), ch. 10.
     """
-    phase = np.full(omega.shape, -0.5 * np.pi * system.origin_order - (np.pi if system.origin_gain < 0 else 0.0))
-    roots = np.concatenate([system.zeros, system.poles])
-    sense = np.ones(roots.size)
-    sense[system.zeros.size :] = -1.0
-    sense[roots.real > 0] *= -1.0
-    sense[roots == 0] = 0.0
+    imag, real, sense = _turning_roots(system.unit)
     # atan2 of the pair's parts at omega = 0 cancels; of a real root it is zero.
-    phase += sense @ np.arctan2(omega - roots.imag[:, None], np.abs(roots.real)[:, None])
-    return phase - system.theta * omega
+    phase = sense @ np.arctan2(omega - imag, real)
+    phase += phase_at_start(system)
+    return phase - system.theta * omega if system.theta else np.asarray(phase)
+
+
+def phase_at_start(system: TransferFunction) -> float:
+    """Phase that is approached for omega to 0 [rad]."""
+    return -0.5 * pi * system.origin_order - (pi if system.origin_gain < 0 else 0.0)
+
+
+@lru_cache(maxsize=64)
+def _turning_roots(unit: TransferFunction) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Of the roots off the origin imaginary part and size of the real part, (k, 1) each, and turns of the phase, (k,)."""
+    turns: Counter[complex] = Counter()
+    for roots, sense in ((unit.zeros.tolist(), 1), (unit.poles.tolist(), -1)):
+        for r in roots:
+            if r:
+                turns[complex(abs(r.real), r.imag)] += -sense if r.real > 0 else sense
+    at = np.array([r for r, sense in turns.items() if sense], dtype=complex)[:, None]
+    return at.imag.copy(), at.real.copy(), np.array([float(sense) for sense in turns.values() if sense])
 
 
 def log_magnitude(system: TransferFunction, omega: FloatArray) -> FloatArray:

@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from looplab.engine.frequency.response import frequency_grid, log_magnitude, phase_rad
+from looplab.engine.frequency.response import frequency_grid, log_magnitude, phase_at_start, phase_rad
 from looplab.engine.frequency.scalar import newton_in_bracket, scalar_loop
 from looplab.engine.systems.transfer_function import TransferFunction
 
@@ -45,22 +45,36 @@ class UnitCurve:
         negative slope of ln \\|G\\|.
     """
 
-    def __init__(self, unit: TransferFunction, omega: FloatArray) -> None:
+    def __init__(
+        self, unit: TransferFunction, omega: FloatArray, parts: tuple[UnitCurve, UnitCurve] | None = None
+    ) -> None:
         self.unit, self.omega = unit, _read_only(omega)
+        # Of two systems in series those of each: what was computed of one of them is not computed again.
+        self._parts = parts if parts and all(part.is_finite and part.value.all() for part in parts) else None
 
     @cached_property
     def log_magnitude(self) -> FloatArray:
         """ln|G|."""
+        if self._parts:
+            first, second = self._parts
+            return _read_only(first.log_magnitude + second.log_magnitude)
         return _read_only(log_magnitude(self.unit, self.omega))
 
     @cached_property
     def phase(self) -> FloatArray:
         """Phase [rad]."""
+        if self._parts:
+            first, second = self._parts
+            turns = phase_at_start(self.unit) - phase_at_start(first.unit) - phase_at_start(second.unit)
+            return _read_only(first.phase + second.phase + turns)
         return _read_only(phase_rad(self.unit, self.omega))
 
     @cached_property
     def value(self) -> ComplexArray:
         """G(j omega)."""
+        if self._parts:
+            first, second = self._parts
+            return _read_only(first.value * second.value)
         return _read_only(self.unit.response(self.omega))
 
     @cached_property
@@ -145,7 +159,8 @@ def _on_grid_of(unit: TransferFunction, grid_of: TransferFunction, low: float, h
 
 @lru_cache(maxsize=32)
 def _on_frequencies(unit: TransferFunction, omega: bytes) -> UnitCurve:
-    return UnitCurve(unit, np.frombuffer(omega))
+    parts = unit.factors and (_on_frequencies(unit.factors[0], omega), _on_frequencies(unit.factors[1], omega))
+    return UnitCurve(unit, np.frombuffer(omega), parts)
 
 
 def sampled(system: TransferFunction, low: float, high: float, grid_of: TransferFunction | None = None) -> Sampled:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property, lru_cache
-from math import isfinite
+from math import exp, isfinite, log
 from struct import pack
 from typing import overload
 
@@ -197,11 +197,16 @@ class TransferFunction:
     @cached_property
     def _origin(self) -> tuple[int, float]:
         """The number of integrators m, and the limit of s^m G(s) per gain."""
-        z, p = self.zeros[self.zeros != 0], self.poles[self.poles != 0]
-        log_magnitude = np.log(np.abs(z)).sum() - np.log(np.abs(p)).sum()
-        negatives = np.count_nonzero((z.imag == 0) & (z.real > 0)) + np.count_nonzero((p.imag == 0) & (p.real > 0))
-        order = (self.poles.size - p.size) - (self.zeros.size - z.size)
-        return int(order), float((-1.0) ** negatives * np.exp(log_magnitude))
+        order, log_magnitude, sign = 0, 0.0, 1.0
+        for roots_, sense in ((self.zeros.tolist(), 1), (self.poles.tolist(), -1)):
+            for r in roots_:
+                if r == 0:
+                    order -= sense
+                    continue
+                log_magnitude += sense * log(abs(r))
+                if r.imag == 0.0 and r.real > 0.0:
+                    sign = -sign
+        return order, sign * exp(log_magnitude)
 
     @property
     def dc_gain(self) -> float:
@@ -278,6 +283,11 @@ class TransferFunction:
     __rmul__ = __mul__
 
     @cached_property
+    def factors(self) -> tuple[TransferFunction, TransferFunction] | None:
+        """The two systems of gain 1 or -1 that a series connection of gain 1 or -1 was made of, where that is known."""
+        return None
+
+    @cached_property
     def unit(self) -> TransferFunction:
         """The same roots and dead time with gain +1 or -1: what a moved gain leaves as it is."""
         if abs(self.gain) == 1.0:
@@ -321,10 +331,12 @@ class TransferFunction:
 
 @lru_cache(maxsize=128)
 def _series(first: TransferFunction, second: TransferFunction) -> TransferFunction:
-    """Two systems one after the other; for every gain of either the roots are the same arrays."""
-    return TransferFunction._of(
+    """Two systems of gain 1 or -1 one after the other; for every gain of either the roots are the same arrays."""
+    out = TransferFunction._of(
         np.concatenate([first.zeros, second.zeros]),
         np.concatenate([first.poles, second.poles]),
         first.gain * second.gain,
         first.theta + second.theta,
     )
+    out.__dict__["factors"] = (first, second)
+    return out
