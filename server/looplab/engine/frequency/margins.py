@@ -75,7 +75,7 @@ def _sensitivity_terms(curve: UnitCurve) -> tuple[FloatArray, ...]:
 
 def _peaks_on(grid: Sampled) -> list[tuple[float, float]]:
     """Largest |S| and largest |T| on a grid, refined where their slopes change sign: (value, omega) of each."""
-    omega, k = grid.omega, abs(grid.gain)
+    omega, value, k = grid.omega, grid.curve.value, abs(grid.gain)
     twice_real, square, first, second, third, fourth = _sensitivity_terms(grid.curve)
     loop = scalar_loop(grid.curve.unit)
     out = []
@@ -88,12 +88,14 @@ def _peaks_on(grid: Sampled) -> list[tuple[float, float]]:
         summit = (rising[:-1] > rising[1:]).nonzero()[0]
         where = float(omega[size.argmax()])
         top = loop.peak_size(log(where), k, part)
-        # Only the highest summits can win; the rest need no refinement.
-        if summit.size > 8:
-            summit = summit[np.argsort(np.maximum(size[summit], size[summit + 1]))[-8:]]
         slope = partial(loop.sensitivity_slope, gain=k, part=part)
-        for a, b in zip(omega[summit].tolist(), omega[summit + 1].tolist(), strict=True):
-            low, high = log(a), log(b)
+        for i in summit[np.argsort(-size[summit])].tolist():
+            # The chord bounds how near -1 the curve may come between two points: most summits cannot win.
+            start, end = (k * v for v in value[i : i + 2].tolist())
+            nearest = 0.5 * (abs(1.0 + start) + abs(1.0 + end)) - 0.6 * abs(end - start)
+            if nearest > 0.0 and (1.0 if part == "S" else 1.1 * max(abs(start), abs(end))) <= top * nearest:
+                continue
+            low, high = log(omega[i]), log(omega[i + 1])
             x = newton_in_bracket(slope, low, high, (slope(low)[0], slope(high)[0]))
             peak = loop.peak_size(x, k, part)
             if peak > top:

@@ -59,7 +59,7 @@ def phase_at_start(system: TransferFunction) -> float:
 
 @lru_cache(maxsize=64)
 def _turning_roots(unit: TransferFunction) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Of the roots off the origin imaginary part and size of the real part, (k, 1) each, and turns of the phase, (k,)."""
+    """Of the roots off the origin imaginary part and size of the real part, (k, 1) each, and turns of phase, (k,)."""
     turns: Counter[complex] = Counter()
     for roots, sense in ((unit.zeros.tolist(), 1), (unit.poles.tolist(), -1)):
         for r in roots:
