@@ -8,7 +8,6 @@ from operator import attrgetter
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg.lapack import dgeev
 
 from looplab.engine.frequency.crossings import crossings
 from looplab.engine.frequency.nyquist import NyquistCount, nyquist_count
@@ -17,6 +16,7 @@ from looplab.engine.loop.feedback_loop import FeedbackLoop
 from looplab.engine.stability.delay_line import delay_line_matrix
 from looplab.engine.stability.polish import polish_closed_loop_poles, polish_few
 from looplab.engine.systems.hidden_modes import split_hidden_modes
+from looplab.engine.systems.polynomial import eigenvalues
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
@@ -121,8 +121,8 @@ def closed_loop_poles(loop: FeedbackLoop) -> ClosedLoopPoles:
         # The loop is cut: the poles of plant and controller stay where they are.
         return ClosedLoopPoles(_sorted(loop.open_loop.poles), True)
     if loop.theta == 0.0:
-        re, im = dgeev(loop_equations(loop.lumped).closed_loop_matrix(), compute_vl=0, compute_vr=0)[:2]
-        return ClosedLoopPoles(_sorted(polish_few(loop.open_loop, re + 1j * im)), True)
+        poles = eigenvalues(loop_equations(loop.lumped).closed_loop_matrix())
+        return ClosedLoopPoles(_sorted(polish_few(loop.open_loop, poles)), True)
     reason = "dead time makes infinitely many closed-loop poles; the rightmost are listed"
     poles = _sorted(_dead_time_poles(loop))
     return ClosedLoopPoles(poles[:24], False, reason)

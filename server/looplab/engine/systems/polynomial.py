@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
+from scipy.linalg.lapack import dgeev
 
-from looplab.engine.errors import InvalidInput
+from looplab.engine.errors import InvalidInput, NoConvergence
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -71,8 +72,35 @@ def roots(coefficients: FloatArray) -> ComplexArray:
             scaled = monic * scale ** -np.arange(p.size)
         if not np.isfinite(scaled).all():
             raise InvalidInput("the coefficients are too far apart", hint="choose other units")
-        found = pair_conjugates(np.roots(scaled) * scale)
+        found = pair_conjugates(eigenvalues(_companion(scaled)) * scale)
     return np.concatenate([np.zeros(origin, dtype=complex), found])
+
+
+def eigenvalues(matrix: FloatArray) -> ComplexArray:
+    """Eigenvalues of one small real matrix, shape (n, n): LAPACK without what numpy does around it.
+
+    Raises
+    ------
+    NoConvergence
+        LAPACK's QR iteration failed.
+    """
+    if not matrix.size:
+        return np.zeros(0, dtype=complex)
+    re, im, _, _, failed = dgeev(matrix, compute_vl=0, compute_vr=0)
+    if failed:
+        raise NoConvergence(
+            "the eigenvalues do not converge", hint="choose a time unit in which the numbers are moderate"
+        )
+    return np.asarray(re + 1j * im)
+
+
+def _companion(monic: FloatArray) -> FloatArray:
+    """Companion matrix of a polynomial with leading coefficient 1, highest power first."""
+    n = monic.size - 1
+    out = np.zeros((n, n))
+    out.ravel()[n :: n + 1] = 1.0
+    out[0] = -monic[1:]
+    return out
 
 
 def pair_conjugates(values: npt.ArrayLike, field: str | None = None) -> ComplexArray:

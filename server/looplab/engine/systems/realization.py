@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 
-from looplab.engine.systems.polynomial import ComplexArray, FloatArray
+from looplab.engine.systems.polynomial import FloatArray
 from looplab.engine.systems.transfer_function import TransferFunction
 
 
@@ -21,9 +23,18 @@ class StateSpace:
     D: float
 
 
-def _sections(system: TransferFunction) -> list[tuple[ComplexArray, ComplexArray]]:
+class _Section(NamedTuple):
+    """x' = a x + b u, y = c x + d u of one or two poles, as plain numbers."""
+
+    a: list[list[float]]
+    b: list[float]
+    c: list[float]
+    d: float
+
+
+def _pairing(system: TransferFunction) -> list[tuple[list[complex], list[complex]]]:
     """Pair zeros with nearby poles: (poles, zeros) of each section, at most two of each, never more zeros."""
-    poles, zeros = list(system.poles), list(system.zeros)
+    poles, zeros = system.poles.tolist(), system.zeros.tolist()
     groups: list[list[complex]] = [[p, p.conjugate()] for p in poles if p.imag > 0]
     singles = sorted((p for p in poles if p.imag == 0), key=lambda p: p.real)
     pairs = [z for z in zeros if z.imag > 0]
@@ -41,27 +52,26 @@ def _sections(system: TransferFunction) -> list[tuple[ComplexArray, ComplexArray
         taken[nearest(z, 2)] += [z, z.conjugate()]
     for z in sorted((z for z in zeros if z.imag == 0), key=lambda z: z.real):
         taken[nearest(z, 1)].append(z)
-    return [(np.array(g), np.array(t, dtype=complex)) for g, t in zip(groups, taken, strict=True)]
+    return list(zip(groups, taken, strict=True))
 
 
-def _first_order(pole: float, zeros: ComplexArray) -> tuple[FloatArray, FloatArray, FloatArray, float]:
+def _first_order(pole: float, zeros: list[complex]) -> _Section:
     b = abs(pole) or 1.0
-    if zeros.size:
-        return np.array([[pole]]), np.array([b]), np.array([(pole - zeros[0].real) / b]), 1.0
-    return np.array([[pole]]), np.array([b]), np.array([1.0 / b]), 0.0
+    if zeros:
+        return _Section([[pole]], [b], [(pole - zeros[0].real) / b], 1.0)
+    return _Section([[pole]], [b], [1.0 / b], 0.0)
 
 
-def _second_order(poles: ComplexArray, zeros: ComplexArray) -> tuple[FloatArray, FloatArray, FloatArray, float]:
+def _second_order(poles: list[complex], zeros: list[complex]) -> _Section:
     total, product = (poles[0] + poles[1]).real, (poles[0] * poles[1]).real
-    w = np.sqrt(abs(product)) or np.max(np.abs(poles)) or 1.0
-    a = np.array([[0.0, w], [-product / w, total]])
-    b = np.array([0.0, w])
-    if zeros.size == 2:
+    w = sqrt(abs(product)) or max(map(abs, poles)) or 1.0
+    a, b = [[0.0, w], [-product / w, total]], [0.0, w]
+    if len(zeros) == 2:
         n1, n0 = -(zeros[0] + zeros[1]).real, (zeros[0] * zeros[1]).real
-        return a, b, np.array([(n0 - product) / w**2, (n1 + total) / w]), 1.0
-    if zeros.size == 1:
-        return a, b, np.array([-zeros[0].real / w**2, 1.0 / w]), 0.0
-    return a, b, np.array([1.0 / w**2, 0.0]), 0.0
+        return _Section(a, b, [(n0 - product) / w**2, (n1 + total) / w], 1.0)
+    if len(zeros) == 1:
+        return _Section(a, b, [-zeros[0].real / w**2, 1.0 / w], 0.0)
+    return _Section(a, b, [1.0 / w**2, 0.0], 0.0)
 
 
 def realize(system: TransferFunction) -> StateSpace:
@@ -94,20 +104,25 @@ def realize(system: TransferFunction) -> StateSpace:
 @lru_cache(maxsize=128)
 def _realize_unit(system: TransferFunction) -> StateSpace:
     n = system.order
-    A, B = np.zeros((n, n)), np.zeros(n)
-    at, d_chain, c_chain = 0, 1.0, np.zeros(n)
-    for poles, zeros in _sections(system) if n else ():
-        a, b, c, d = _first_order(poles[0].real, zeros) if poles.size == 1 else _second_order(poles, zeros)
-        stop = at + poles.size
-        # Input of this section: output of the chain so far, c_chain x + d_chain u.
-        A[at:stop, :] += b[:, None] * c_chain
-        A[at:stop, at:stop] += a
-        B[at:stop] = b * d_chain
-        c_chain = d * c_chain
-        c_chain[at:stop] += c
-        d_chain = d * d_chain
-        at = stop
-    C = system.gain * c_chain
-    for array in (A, B, C):
+    # Plain numbers: the arrays would be small and many.
+    rows: list[list[float]] = []
+    B: list[float] = []
+    chain, through = [0.0] * n, 1.0
+    for poles, zeros in _pairing(system) if n else ():
+        section = _first_order(poles[0].real, zeros) if len(poles) == 1 else _second_order(poles, zeros)
+        at = len(rows)
+        for own, b in zip(section.a, section.b, strict=True):
+            # Input of this section: output of the chain so far, chain x + through u.
+            row = [b * c for c in chain]
+            for j, value in enumerate(own, at):
+                row[j] += value
+            rows.append(row)
+            B.append(b * through)
+        chain = [section.d * c for c in chain]
+        for j, c in enumerate(section.c, at):
+            chain[j] += c
+        through *= section.d
+    arrays = np.array(rows).reshape(n, n), np.array(B), system.gain * np.array(chain)
+    for array in arrays:
         array.setflags(write=False)
-    return StateSpace(A, B, C, float(system.gain * d_chain))
+    return StateSpace(*arrays, float(system.gain * through))
