@@ -8,6 +8,7 @@ const PAGES = [
   { id: "home", href: "/", label: "Home" },
   { id: "workbench", href: "/workbench", label: "Workbench" },
   { id: "plants", href: "/plants", label: "Plants" },
+  { id: "experiments", href: "/experiments", label: "Experiments" },
   { id: "labs", href: "/labs", label: "Labs" },
 ];
 
