@@ -9,7 +9,7 @@
 import { fromQuery, toQuery } from "./experiment-url.js";
 
 /** @typedef {ReturnType<typeof createExperimentBench>} ExperimentBench */
-/** @typedef {"plant" | "about" | "experiment" | "result" | "source" | "identified" | "method" | "lines" | "found" | "rules" | "pick"} Topic */
+/** @typedef {"plant" | "about" | "experiment" | "result" | "watched" | "source" | "identified" | "method" | "lines" | "found" | "rules" | "pick"} Topic */
 
 /** @param {string} search */
 export function createExperimentBench(search) {
@@ -22,6 +22,8 @@ export function createExperimentBench(search) {
   let trouble = null;
   /** @type {Result | null} */
   let result = null;
+  /** Whether the result has been watched to its end: nothing is said of it before. */
+  let watched = false;
   /** @type {Source | null} */
   let source = null;
   /** @type {IdentifyAnswer | null} */
@@ -51,6 +53,9 @@ export function createExperimentBench(search) {
     },
     get result() {
       return result;
+    },
+    get watched() {
+      return watched;
     },
     get source() {
       return source;
@@ -87,18 +92,20 @@ export function createExperimentBench(search) {
     },
     /** @param {Result | null} next */
     setResult(next) {
-      result = next;
+      [result, watched] = [next, false];
       tell("result");
     },
     /** What the experiment was for, once it has been watched to its end: the record of a step, or an ultimate point. */
     finish() {
       if (!result || !about) return;
       const { kind, answer } = result;
+      watched = true;
       if (kind === "step") {
         const { timeUnit, inputUnit, outputUnit, inputName, outputName } = about;
         this.setSource({ from: "experiment", data: { t: answer.t, u: answer.u, y: answer.y }, csv: null, columns: null, u_before: answer.u0, timeUnit, inputUnit, outputUnit, inputName, outputName }, identified === null);
       } else if (kind === "relay" && answer.relay) this.setUltimate({ Ku: answer.Ku, Pu: answer.Pu, by: "the relay", relay: answer.relay });
       else if (kind === "search") this.setUltimate({ Ku: answer.Ku, Pu: answer.Pu, by: "the search", relay: null });
+      tell("watched");
     },
     /** @param {Source | null} next @param {boolean} [keepLines]  they came with the address */
     setSource(next, keepLines = false) {

@@ -10,7 +10,7 @@ import { valueTable } from "../components/facts.js";
 
 /** @param {number | null | undefined} value @param {number | null | undefined} exact */
 function off(value, exact) {
-  return value == null || !exact ? UNDEFINED : `${value >= exact ? "+" : ""}${formatFixed(100 * (value / exact - 1), 2)} %`;
+  return value == null || !exact ? UNDEFINED : `${formatFixed(100 * (value / exact - 1), 2)} %`;
 }
 
 /** @param {Step} step @param {ExperimentBench} bench */
@@ -39,16 +39,17 @@ export function mount(step, bench) {
   function words() {
     const { result, about, found } = bench;
     const { kind } = bench.setting.experiment;
-    const why = about && !about.ultimate && about.reason && kind !== "step" ? h("p", { class: "finding" }, sentence(about.reason)) : null;
+    const why = about && !about.ultimate && about.reason && kind === "hand" ? h("p", { class: "finding" }, sentence(about.reason)) : null;
+    if (result && !bench.watched) return [];
     if (!result) return [kind === "hand" && found.ultimate ? ultimateTable(found.ultimate, found.ultimate.by) : null, why];
     const { answer } = result;
     const cut = answer.truncated_reason ?? answer.run?.truncated_reason;
     const notes = [...(answer.notes ?? []), ...(cut ? [`the run ends early: ${cut}`] : [])].map((note) => h("p", { class: "finding warn" }, sentence(note)));
     if (kind === "step") return notes;
-    if (kind === "search") return [ultimateTable(answer, "the search"), ...(answer.window?.low ? [h("p", { class: "finding" }, h("strong", {}, "Stable gains: "), `${formatNumber(answer.window.low, 4)} < |Kc| < ${formatNumber(answer.window.high, 4)}`)] : []), ...notes, trials(answer), why];
+    if (kind === "search") return [ultimateTable(answer, "the search"), ...notes, trials(answer)];
     if (kind === "relay") {
       const bias = answer.exact ? h("p", { class: "finding" }, "The describing function takes y for a sine, which it is not quite: that, not the experiment, is the error of Ku.") : null;
-      return [answer.reason ? h("p", { class: "finding warn" }, sentence(answer.reason)) : ultimateTable(answer, "the relay"), answer.swing === null ? null : h("p", { class: "finding" }, `Swing a = ${formatWithUnit(answer.swing, about?.outputUnit ?? "", 4)}, so Ku = 4d/(π√(a² − ε²)) = ${formatNumber(answer.Ku, 4)}.`), bias, ...notes, why];
+      return [answer.reason ? h("p", { class: "finding warn" }, sentence(answer.reason)) : ultimateTable(answer, "the relay"), answer.swing === null ? null : h("p", { class: "finding" }, `Swing a = ${formatWithUnit(answer.swing, about?.outputUnit ?? "", 4)}, so Ku = 4d/(π√(a² − ε²)) = ${formatNumber(answer.Ku, 4)}.`), bias, ...notes];
     }
     const seen = judge(answer.run.turning_points);
     const take = () => seen.Pu && bench.setUltimate({ Ku: answer.run.Kc, Pu: seen.Pu, by: "your hand", relay: null });
@@ -62,6 +63,6 @@ export function mount(step, bench) {
   }
 
   const show = () => root.replaceChildren(...words().filter((each) => each !== null));
-  bench.on(["result", "found", "about", "experiment"], show);
+  bench.on(["result", "watched", "found", "about", "experiment"], show);
   show();
 }

@@ -30,6 +30,9 @@ const LONGEST_TICK = 0.1;
 /** Swings below this part of the setpoint's step have died out. */
 const LEAST = 2e-3;
 const SPEEDS = [0.5, 1, 3];
+/** Periods without a turn after which nothing more is to come. */
+const DEAD = 1.5;
+const DIED_OUT = { word: "died out", next: "Raise Kc and bump the setpoint." };
 /** @type {Record<ReturnType<typeof judge>["verdict"], {word: string, next: string}>} */
 const VERDICTS = {
   "too few": { word: "too few swings to judge", next: "Wait for a few swings; if none come, raise Kc or bump the setpoint." },
@@ -144,7 +147,9 @@ export function mount(step, bench, api) {
   function verdict() {
     if (!loop) return;
     const found = judge(swings.points, since);
-    const { word: say, next: then } = VERDICTS[found.verdict];
+    const last = Math.max(since, swings.points.t.at(-1) ?? -Infinity);
+    const dead = found.verdict === "too few" && loop.end - last > DEAD * period();
+    const { word: say, next: then } = dead ? DIED_OUT : VERDICTS[found.verdict];
     said.dataset["verdict"] = found.verdict.replace(" ", "-");
     const held = loop.limited > loop.end - 2 * (found.Pu ?? period());
     take.disabled = found.verdict !== "sustained" || held;

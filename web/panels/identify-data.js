@@ -21,6 +21,15 @@ export function headerOf(text) {
   return line.split(mark).map((cell) => cell.trim().replace(/^"|"$/g, ""));
 }
 
+/** Text of a file: UTF-8, or what older spreadsheets write. @param {ArrayBuffer} bytes */
+function decoded(bytes) {
+  try {
+    return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
+  } catch {
+    return new TextDecoder("windows-1252").decode(bytes);
+  }
+}
+
 /** @param {Step} step @param {ExperimentBench} bench @param {Api} api */
 export function mount(step, bench, api) {
   let asked = 0;
@@ -57,7 +66,7 @@ export function mount(step, bench, api) {
     if (!chosen) return;
     own.open = true;
     if (chosen.size > MAX_BYTES) return step.say("The file is larger than 2 MiB: send a part of it.", true);
-    text.value = new TextDecoder().decode(await chosen.arrayBuffer());
+    text.value = decoded(await chosen.arrayBuffer());
     take();
   }
   file.addEventListener("change", () => {
