@@ -39,9 +39,10 @@ async function aboutLibrary(api, { id, input, output, point, ...rest }, answer) 
   const y = outputs.find(({ name }) => name === output);
   const level = linear.output_signals.find((/** @type {any} */ each) => each.name === output)?.value ?? 0;
   const unstable = linear.verdict === "unstable";
+  const found = await known(api, plant).catch((error) => ({ ultimate: null, reason: /** @type {string} */ (error.message), model: null }));
   // A sensor belongs to the loop that rings: the plant's own ultimate point is then another one.
   const bare = rest.sensor_tau === null && rest.sensor_theta === 0;
-  const found = bare ? await known(api, plant).catch((error) => ({ ultimate: null, reason: error.message })) : { ultimate: null, reason: "frequency analysis here leaves the sensor out" };
+  const times = found.model?.tau != null ? found.model.tau + found.model.theta : null;
   const direction = firstMove(ss.A, ss.B, ss.C) || Math.sign(gain || 1);
   return {
     timeUnit,
@@ -51,11 +52,11 @@ async function aboutLibrary(api, { id, input, output, point, ...rest }, answer) 
     outputName: output,
     sign: Math.sign(found.ultimate?.Ku ?? (unstable ? direction : gain || direction)) || 1,
     gain,
-    scale: Math.max(...(linear.time_constants ?? []), 0) || answer.time_scale || 1,
+    scale: times ?? (Math.max(...(linear.time_constants ?? []), 0) || answer.time_scale || 1),
     span: u ? Math.min(usualRange(u).max - usualRange(u).min, 2 * Math.abs(u.value) || Infinity) : 1,
     level,
-    ultimate: found.ultimate,
-    reason: found.reason,
+    ultimate: bare ? found.ultimate : null,
+    reason: bare ? found.reason : "frequency analysis here leaves the sensor out, so there is nothing to hold the loop with a sensor against",
     rest: linear.x,
     u0: linear.inputs[input],
   };

@@ -38,7 +38,7 @@ export function mount(step, bench) {
   /** @returns {(Node | string | null)[]} */
   function words() {
     const { result, about, found } = bench;
-    const { kind } = bench.setting.experiment;
+    const kind = result?.kind ?? bench.setting.experiment.kind;
     const why = about && !about.ultimate && about.reason && kind === "hand" ? h("p", { class: "finding" }, sentence(about.reason)) : null;
     if (result && !bench.watched) return [];
     if (!result) return [kind === "hand" && found.ultimate ? ultimateTable(found.ultimate, found.ultimate.by) : null, why];

@@ -8,6 +8,7 @@
 import { cycleRequest, filledIn, relayRequest, stepRequest } from "../core/experiment-requests.js";
 import { toInput } from "../core/format.js";
 import { patiently } from "../core/patience.js";
+import { unitRatio } from "../core/units.js";
 import { h, setText } from "../components/dom.js";
 import { fieldRow, number } from "../components/form-parts.js";
 import "../components/segmented-control.js";
@@ -27,8 +28,9 @@ export function mount(step, bench, api) {
   kinds.options = Object.entries(KINDS).map(([value, { label, title }]) => ({ value, label, title }));
   kinds.addEventListener("value-change", () => {
     asked += 1;
-    bench.setExperiment({ kind: /** @type {ExperimentKind} */ (kinds.value) });
     bench.setResult(null);
+    step.say("");
+    bench.setExperiment({ kind: /** @type {ExperimentKind} */ (kinds.value) });
   });
   const what = h("p", { class: "field-hint" });
   const fields = h("div", { class: "step-fields" });
@@ -74,7 +76,7 @@ export function mount(step, bench, api) {
         ...(library ? [fieldRow(runs(chosen.cycleHorizon), h("span"))] : []),
       );
     } else {
-      const gain = field("Kc", `Gain Kc${about.sign < 0 ? ", taken negative" : ""}`, chosen.Kc, { unit: outputUnit ? `${inputUnit || "1"}/${outputUnit}` : "", above: 0 });
+      const gain = field("Kc", `Gain Kc${about.sign < 0 ? ", taken negative" : ""}`, chosen.Kc, { unit: unitRatio(inputUnit, outputUnit), above: 0 });
       fields.replaceChildren(...(kind === "hand" && library ? [fieldRow(gain, runs(chosen.cycleHorizon))] : library ? [fieldRow(runs(chosen.cycleHorizon), h("span"))] : []));
     }
   }

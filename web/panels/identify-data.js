@@ -9,6 +9,8 @@ import { h, setText } from "../components/dom.js";
 import { choice, fieldRow, number } from "../components/form-parts.js";
 
 const TYPING_MS = 500;
+/** So much of a line that cannot be read is shown. */
+const SHOWN = 60;
 /** As much as the server takes. */
 const MAX_BYTES = 2 * 1024 * 1024;
 const SAMPLE = "time [min]; valve [%]; T [°C]\n0; 20; 60,1\n1; 20; 60,0\n2; 25; 60,0\n…";
@@ -97,6 +99,18 @@ export function mount(step, bench, api) {
     columns.replaceChildren(fieldRow(t.root, u.root, y.root), h("button", { type: "button", class: "button", onclick: () => take({ t: t.value, u: u.value, y: y.value }) }, "Read these columns"));
   }
 
+  /** Shows the line that the server names. @param {string} csv @param {string} message */
+  function point(csv, message) {
+    const [, number] = /^line (\d+)/.exec(message) ?? [];
+    const lines = csv.split(/\r\n|\r|\n/);
+    const bad = lines[Number(number) - 1];
+    if (!number || bad === undefined) return;
+    step.say(`${step.message.textContent} It reads: ${bad.slice(0, SHOWN)}${bad.length > SHOWN ? "…" : ""}`, true);
+    const from = lines.slice(0, Number(number) - 1).reduce((sum, line) => sum + line.length + 1, 0);
+    text.setSelectionRange(from, from + bad.length);
+    text.scrollTop = Math.max(0, Number(number) - 3) * (text.scrollHeight / lines.length);
+  }
+
   async function ask() {
     const { source } = bench;
     const now = (asked += 1);
@@ -117,7 +131,9 @@ export function mount(step, bench, api) {
       bench.setIdentified(answer);
     } catch (error) {
       if (now !== asked) return;
+      bench.setIdentified(null);
       step.complain(error);
+      if (csv !== null) point(csv, /** @type {any} */ (error).message);
       if (csv !== null && /which column|no column/.test(/** @type {any} */ (error).message)) offerColumns();
     }
   }
@@ -125,7 +141,7 @@ export function mount(step, bench, api) {
   function show() {
     const { source } = bench;
     back.hidden = !(source?.from === "text" && bench.result?.kind === "step");
-    setText(from, !source ? "Make a step test above, or use a record of your own." : source.from === "text" ? "The record is your own: no plant stands behind it, so step 5 shows the model's promise alone." : "The record is that of the step test above.");
+    setText(from, !source ? "Make a step test above, or use a record of your own." : source.from === "text" ? "The record is your own. No plant stands behind it: step 5 shows the model's promise alone." : "The record is that of the step test above.");
     void ask();
   }
   bench.on(["source"], show);

@@ -6,6 +6,7 @@
 
 import { METHODS } from "../core/construction.js";
 import { formatFixed, formatNumber, formatWithUnit, greek, sentence, UNDEFINED } from "../core/format.js";
+import { unitRatio } from "../core/units.js";
 import { readOff } from "../core/read-off.js";
 import { h } from "../components/dom.js";
 import { captioned, headRow } from "../components/facts.js";
@@ -31,8 +32,7 @@ export function mount(step, bench, { next }) {
   const unitOf = (name) => {
     const { timeUnit = "", inputUnit = "", outputUnit = "" } = bench.source ?? {};
     if (TIMES.has(name)) return timeUnit;
-    if (name !== "K" || (!inputUnit && !outputUnit)) return "";
-    return `${outputUnit || "1"}/${inputUnit || "1"}`;
+    return name === "K" ? unitRatio(outputUnit, inputUnit) : "";
   };
 
   function tell() {

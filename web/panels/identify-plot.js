@@ -17,6 +17,8 @@ import { createFigure } from "../plots/figure.js";
 import { identificationPlot } from "../plots/identification.js";
 
 const HELP = "The record, and over it what the model answers to the same input. Drag a line by its handle, or focus the handle and use the arrow keys (Shift: large steps): the model follows by the method's formula. What the model leaves over stands below; it should look like noise, without a pattern.";
+const NONE = "No record yet: it appears here as soon as the step test above has run to its end.";
+const UNREAD = "Your record appears here once it can be read.";
 /** One key press, in parts of the record's span. */
 const STEP = 1 / 400;
 
@@ -37,7 +39,7 @@ export function mount(step, bench) {
   });
   const formula = h("p", { class: "identify-formula" });
   const own = h("button", { type: "button", class: "button small", onclick: () => bench.setLines({}) }, "Back to the method's own lines");
-  const empty = h("p", { class: "empty" }, "No record yet: it appears here as soon as the step test above has run to its end.");
+  const empty = h("p", { class: "empty" });
   const panel = createPanelFrame(step.stage, {
     id: "identify",
     title: "Record and model",
@@ -117,6 +119,7 @@ export function mount(step, bench) {
     const found = read();
     panel.root.hidden = !found;
     empty.hidden = found !== null;
+    setText(empty, source?.from === "text" ? UNREAD : NONE);
     if (!found || !identified || !source) return placeAll();
     const unit = (/** @type {string} */ name, /** @type {string} */ of) => (of ? `${name} [${of}]` : name);
     const { lines } = METHODS[setting.method];
