@@ -18,9 +18,10 @@ import { fitPercent, lagResponse } from "./lag-response.js";
  * @property {string | null} reason  why there is no model
  */
 
-/** @param {IdentifyAnswer} answer @param {MethodName} method @param {Lines} moved @returns {ReadOff} */
+/** Null where the method has not been asked yet. @param {IdentifyAnswer | null} answer @param {MethodName} method @param {Lines} moved @returns {ReadOff | null} */
 export function readOff(answer, method, moved) {
-  const found = answer.methods?.find((each) => each.method === method) ?? answer;
+  const found = answer?.method === method ? answer : answer?.methods?.find((each) => each.method === method);
+  if (!answer || !found) return null;
   const { construction, system, model, y_hat, residuals, fit_pct, reason } = found;
   /** @type {Lines} */
   const own = Object.fromEntries(METHODS[method].lines.filter((name) => name in construction).map((name) => [name, construction[name]]));

@@ -119,8 +119,9 @@ export function mount(step, bench, api) {
     if (source.from === "experiment") columns.replaceChildren();
     step.say("Reading the record…");
     const { data, csv, columns: named, u_before } = source;
-    try {
-      const answer = await patiently(() => api.identify({ ...(csv === null ? { data } : { csv, columns: named }), u_before, method: "least_squares", compare: true }));
+    const request = { ...(csv === null ? { data } : { csv, columns: named }), u_before };
+    /** @param {import("../core/experiment-types.js").IdentifyAnswer} answer */
+    const accept = (answer) => {
       if (now !== asked) return;
       step.say("");
       if (!named) columns.replaceChildren();
@@ -129,6 +130,12 @@ export function mount(step, bench, api) {
         Object.assign(source, { timeUnit: time_unit ?? units["t"] ?? "", inputUnit: units["u"] ?? "", outputUnit: units["y"] ?? "", inputName: names["u"] || "u", outputName: names["y"] || "y" });
       }
       bench.setIdentified(answer);
+    };
+    try {
+      // The method that is looked at comes first; where it does not apply, the others say so beside it.
+      const { method } = bench.setting;
+      if (!method.startsWith("least_squares")) await patiently(() => api.identify({ ...request, method })).then(accept, () => {});
+      if (now === asked) accept(await patiently(() => api.identify({ ...request, method: "least_squares", compare: true })));
     } catch (error) {
       if (now !== asked) return;
       bench.setIdentified(null);

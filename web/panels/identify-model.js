@@ -37,9 +37,10 @@ export function mount(step, bench, { next }) {
 
   function tell() {
     const { identified, setting } = bench;
-    found.hidden = methods.hidden = !identified;
-    if (!identified) return;
-    const { model, fit_pct, reason, hand, found: own } = readOff(identified, setting.method, setting.moved);
+    const read = readOff(identified, setting.method, setting.moved);
+    found.hidden = !read;
+    if (!read) return;
+    const { model, fit_pct, reason, hand, found: own } = read;
     const intervals = hand ? null : own.intervals;
     numbers.replaceChildren(
       ...NAMES.filter((name) => model && name in model).flatMap((name) => {
@@ -48,7 +49,7 @@ export function mount(step, bench, { next }) {
       }),
       ...(fit_pct === null ? [] : [h("dt", {}, "fit"), h("dd", {}, h("strong", {}, `${formatFixed(fit_pct, 1)} %`), h("small", {}, hand ? "of your lines" : "of the output's variation"))]),
     );
-    status.textContent = reason ? greek(sentence(reason)) : hand ? "The lines are yours." : intervals || setting.method.startsWith("least") ? greek(sentence(own.intervals_note)) : "";
+    status.textContent = reason ? greek(sentence(reason)) : hand ? (model?.["theta"] === 0 ? "The lines are yours; they give no dead time above zero, so θ is taken as 0." : "The lines are yours.") : intervals || setting.method.startsWith("least") ? greek(sentence(own.intervals_note)) : "";
     warnings.replaceChildren(...(hand ? own.warnings.filter((words) => !/interval/.test(words)) : own.warnings).map((words) => h("li", {}, greek(sentence(words)))));
     tune.disabled = !model;
   }
@@ -64,7 +65,8 @@ export function mount(step, bench, { next }) {
 
   function list() {
     const { identified, source } = bench;
-    if (!identified?.methods) return methods.replaceChildren();
+    methods.hidden = !identified;
+    if (!identified?.methods) return methods.replaceChildren(h("p", { class: "field-hint" }, "Working out the other methods…"));
     const unit = source?.timeUnit ? ` [${source.timeUnit}]` : "";
     methods.replaceChildren(captioned("Methods side by side", h("table", { class: "values" }, headRow(["Method", "K", `τ${unit}`, "ζ", `θ${unit}`, "fit", ""]), h("tbody", {}, ...identified.methods.map(row)))));
   }
@@ -72,8 +74,9 @@ export function mount(step, bench, { next }) {
   /** The model goes on to the rules once it has come to rest. */
   function pass() {
     const { identified, setting } = bench;
-    if (!identified) return;
-    const { system, hand } = readOff(identified, setting.method, setting.moved);
+    const read = readOff(identified, setting.method, setting.moved);
+    if (!read) return;
+    const { system, hand } = read;
     bench.setModel(system ? { system, by: METHODS[setting.method].label, hand } : null);
   }
 

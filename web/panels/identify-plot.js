@@ -21,6 +21,8 @@ const NONE = "No record yet: it appears here as soon as the step test above has 
 const UNREAD = "Your record appears here once it can be read.";
 /** One key press, in parts of the record's span. */
 const STEP = 1 / 400;
+/** How far from the edges of the plot, in parts of it, a handle lies that is free to lie anywhere on its line. */
+const EDGE = 0.04;
 
 /** @param {Step} step @param {ExperimentBench} bench */
 export function mount(step, bench) {
@@ -89,15 +91,17 @@ export function mount(step, bench) {
     });
   }
 
-  const read = () => (bench.identified ? readOff(bench.identified, bench.setting.method, bench.setting.moved) : null);
+  const read = () => readOff(bench.identified, bench.setting.method, bench.setting.moved);
 
   /** Where the handle of a line lies: a time at the level that it is read at, a level at the plot's edge. @param {LineName} name */
   function placeOf(name) {
     const found = read();
     const value = found?.lines[name];
     if (!found || value === undefined) return null;
-    const [x0 = 0, x1 = 1] = ranges["xaxis"] ?? [];
-    if (!LINES[name].time) return { x: name === "y0" ? x0 + 0.985 * (x1 - x0) : x0 + 0.015 * (x1 - x0), y: value };
+    const [[x0 = 0, x1 = 1], [low = 0, high = 1]] = [ranges["xaxis"] ?? [], ranges["yaxis"] ?? []];
+    if (!LINES[name].time) return { x: name === "y0" ? x1 - EDGE * (x1 - x0) : x0 + EDGE * (x1 - x0), y: value };
+    // t0 is off the levels, where t1 may come close to it.
+    if (name === "t0") return { x: value, y: high - EDGE * (high - low) };
     return { x: value, y: levelOf(bench.setting.method, name, found.lines) };
   }
 
