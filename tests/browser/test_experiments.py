@@ -1,4 +1,4 @@
-"""From an experiment to a controller: the flow, the lines to be dragged, records of one's own, the loop under the hand."""
+"""From an experiment to a controller: the flow, lines to be dragged, records of one's own, the loop under the hand."""
 
 import math
 import re

@@ -29,6 +29,7 @@ const WRITE_MS = 200;
 /** @param {HTMLElement} main */
 function open(main) {
   main.querySelector(".empty")?.remove();
+  main.addEventListener("panel-expand", (event) => /** @type {HTMLElement} */ (event.target).classList.toggle("enlarged"));
   const api = createApi();
   const bench = createExperimentBench(location.search);
   const bar = createStepBar(main, STEPS);
@@ -59,6 +60,8 @@ function open(main) {
   bench.on(["about", "result", "found", "rules", "pick"], where);
   where();
 
+  // What was done by hand is to be done again: no link can hold it.
+  atOnce &&= bench.setting.experiment.kind !== "hand" || bench.setting.plant.kind === "library";
   if (atOnce) {
     const stop = bench.on(["about"], () => {
       if (!bench.about) return;

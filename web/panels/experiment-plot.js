@@ -124,26 +124,28 @@ export function mount(step, bench, { atOnce }) {
 
   function show() {
     const { result } = bench;
-    const live = bench.setting.experiment.kind === "hand" && bench.setting.plant.kind !== "library";
     panel.root.hidden = !result;
-    empty.hidden = Boolean(result) || live;
     ranges = {};
     finished = !result;
     if (!result) return player.pause();
     const { t } = curves();
     player.load(t[0] ?? 0, t.at(-1) ?? 1, calm() || atOnce());
   }
-  bench.on(["result", "experiment"], () => {
-    if ((bench.result === null) !== panel.root.hidden || shown !== bench.result) show();
-    else empty.hidden = Boolean(bench.result) || (bench.setting.experiment.kind === "hand" && bench.setting.plant.kind !== "library");
-    shown = bench.result;
-  });
-  let shown = bench.result;
+
+  /** By hand, a linear plant runs in a panel of its own. */
+  function invite() {
+    const { experiment, plant } = bench.setting;
+    empty.hidden = Boolean(bench.result) || (experiment.kind === "hand" && plant.kind !== "library");
+  }
+
+  bench.on(["result"], show);
+  bench.on(["result", "experiment"], invite);
   onThemeChange(() => {
     theme = readTheme();
     draw(false);
   });
   show();
+  invite();
 }
 
 /** The edges at which a relay with hysteresis switches, one line back and forth. @param {any} answer @param {number} end */

@@ -58,7 +58,7 @@ export function mount(step, bench, api) {
       model ? `the model (${model.hand ? "your lines" : model.by.toLowerCase()})` : "",
       ultimate ? `the ultimate point by ${ultimate.by}: Ku = ${formatNumber(ultimate.Ku)}, Pu = ${formatWithUnit(ultimate.Pu, unit)}` : "",
     ].filter(Boolean);
-    setText(known, parts.length > 0 ? `The rules start from ${parts.join(", and from ")}.` : "Nothing is known of the plant yet: identify a model, or find its ultimate point.");
+    setText(known, parts.length > 0 ? `The rules start from ${parts.join(", and ")}.` : "Nothing is known of the plant yet: identify a model, or find its ultimate point.");
   }
 
   /** @param {TuneSetting} setting */

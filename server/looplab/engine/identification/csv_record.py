@@ -111,8 +111,8 @@ def read_csv(text: str, columns: Mapping[str, str] | None = None) -> Columns:
 
     Cells are parted by semicolons, tabs or commas (the first of these that the first line has); with semicolons and
     tabs a decimal comma is understood. A first line that is not numbers is the header, with units as in ``t [min]``,
-    ``T (K)``, or in a row of their own below it. Empty lines and lines that begin with # % ! or // are passed over; empty cells, NA, NaN and - are
-    missing values.
+    ``T (K)``, or in a row of their own below it. Empty lines and lines that begin with # % ! or // are passed over;
+    empty cells, NA, NaN and - are missing values.
 
     Parameters
     ----------
