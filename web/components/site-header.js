@@ -8,6 +8,7 @@ const PAGES = [
   { id: "home", href: "/", label: "Home" },
   { id: "workbench", href: "/workbench", label: "Workbench" },
   { id: "plants", href: "/plants", label: "Plants" },
+  { id: "experiments", href: "/experiments", label: "Experiments" },
   { id: "labs", href: "/labs", label: "Labs" },
 ];
 
@@ -34,16 +35,19 @@ export class SiteHeader extends HTMLElement {
       show();
     });
     show();
+    const pages = h("nav", { "aria-label": "Pages" }, ...PAGES.map(({ id, href, label }) => h("a", { href, "aria-current": id === current ? "page" : null }, label)));
     this.append(
       h("a", { class: "skip-link", href: "#main" }, "Skip to content"),
       h(
         "header",
         { class: "site-header" },
         h("a", { class: "brand", href: "/", "aria-label": "looplab, home" }, brandMark(), h("span", {}, "looplab")),
-        h("nav", { "aria-label": "Pages" }, ...PAGES.map(({ id, href, label }) => h("a", { href, "aria-current": id === current ? "page" : null }, label))),
+        pages,
         theme,
       ),
     );
+    const here = pages.querySelector("[aria-current]");
+    if (here instanceof HTMLElement) pages.scrollLeft = here.offsetLeft + here.offsetWidth - pages.offsetLeft - pages.clientWidth;
   }
 }
 

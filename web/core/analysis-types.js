@@ -144,7 +144,7 @@
 /** @typedef {{id: string, name: string, family: string, types: ControllerType[]}} RuleEntry */
 /** @typedef {{Kc: number, tau_I: number | null, tau_D: number | null, alpha: number}} Settings */
 /** @typedef {Record<string, any> & {reasons: Reasons}} Figures */
-/** @typedef {{t: Numbers, y: Numbers, u: Numbers, truncated_at: number | null}} ComparedCurve */
+/** @typedef {{t: Numbers, y: Numbers, u: Numbers, truncated_at: number | null, truncated_reason: string | null}} ComparedCurve */
 /** @typedef {{K: number, tau: number, theta: number, Ms: number | null, load_IAE: number | null}} SpreadCase  factors of gain, time constants and dead time */
 
 /**

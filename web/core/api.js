@@ -67,7 +67,7 @@ export function createApi({ base = "/api/v1", fetch = globalThis.fetch.bind(glob
     loop: async (request) => decodeArrays(await call("/loop", request)),
     /** @param {object} request @returns {Promise<Omit<RootLocusPanel, "key">>} */
     rootLocus: (request) => call("/root-locus", request),
-    /** @param {{plant?: System, model?: object, ultimate?: object, rules?: string[], types?: string[]}} request @returns {Promise<TuneAnswer>} */
+    /** @param {{plant?: System, model?: object, ultimate?: object, relay?: object, rules?: string[], types?: string[]}} request @returns {Promise<TuneAnswer>} */
     tune: (request) => call("/tune", request),
     /** @returns {Promise<{rules: import("./analysis-types.js").RuleEntry[]}>} */
     rules: () => call("/tune/rules"),
@@ -79,6 +79,10 @@ export function createApi({ base = "/api/v1", fetch = globalThis.fetch.bind(glob
     plant: (id) => call(`/plants/${encodeURIComponent(id)}`),
     /** One thing worked out for a plant. @param {string} id @param {string} route @param {object} request @returns {Promise<any>} */
     workOut: (id, route, request) => call(`/plants/${encodeURIComponent(id)}/${route}`, request),
+    /** @param {"step-test" | "ultimate-cycle" | "relay"} kind @param {object} request @returns {Promise<any>} */
+    experiment: (kind, request) => call(`/experiments/${kind}`, request),
+    /** @param {object} request @returns {Promise<import("./experiment-types.js").IdentifyAnswer>} */
+    identify: (request) => call("/identify", request),
     /** @returns {Promise<{labs: LabSummary[]}>} */
     labs: () => call("/labs"),
     /** @param {string} id @returns {Promise<any>} */

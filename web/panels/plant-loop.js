@@ -4,6 +4,7 @@
 /** @import {PlantBench} from "../core/plant-bench.js" */
 /** @import {PlantRun} from "../core/plant-run.js" */
 
+import { firstMove } from "../core/first-move.js";
 import { formatAbsent, formatNumber, formatWithUnit } from "../core/format.js";
 import { round125 } from "../core/plant-pace.js";
 import { usualRange } from "../core/plant-bench.js";
@@ -22,18 +23,6 @@ const UNSTABLE = 6;
 const HELP =
   "A PID controller keeps an output of the nonlinear plant at its setpoint by moving one input, from the start that is chosen above. " +
   "Raise the setpoint step, or lower a limit, until the controller saturates, and compare the ways against windup. Leave the sampling time empty for a continuous controller.";
-
-/** Sign of the first of CB, CAB, CA²B ... that is not zero. @param {number[][]} A @param {number[][]} B @param {number[][]} C */
-export function firstMove(A, B, C) {
-  let x = B.map((row) => row[0] ?? 0);
-  for (let k = 0; k < Math.max(1, A.length); k++) {
-    const markov = (C[0] ?? []).reduce((sum, c, i) => sum + c * (x[i] ?? 0), 0);
-    const size = (C[0] ?? []).reduce((sum, c, i) => sum + Math.abs(c * (x[i] ?? 0)), 0);
-    if (Math.abs(markov) > 1e-9 * size) return Math.sign(markov);
-    x = A.map((row) => row.reduce((sum, a, i) => sum + a * (x[i] ?? 0), 0));
-  }
-  return 0;
-}
 
 /**
  * @param {HTMLElement} host

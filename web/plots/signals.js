@@ -46,6 +46,7 @@ export const SIGNALS = {
   case_4: { label: "rule 4", name: "fourth rule", dash: "longdash", width: 2 },
   case_5: { label: "rule 5", name: "fifth rule", dash: "dash", width: 2 },
   case_6: { label: "rule 6", name: "sixth rule", dash: "dot", width: 2.25 },
+  model: { label: "model", name: "what the model answers", dash: "dash", width: 2.25 },
   least_squares: { label: "least squares", name: "least squares", dash: "longdash", width: 2 },
 };
 

@@ -101,3 +101,5 @@ def test_a_step_test():
     assert (linear_step_test(plant, test, 5.0, 7.0).y == found.y).all()
     with pytest.raises(InvalidInput, match="at its limit"):
         linear_step_test(plant, test, u0=6.0)
+    # 0.5 + 0.1 - 0.5 is not 0.1 in binary fractions: nothing has cut this step short.
+    assert linear_step_test(plant, StepTest(0.1, 1.0, 11.0), u0=0.5).notes == ()

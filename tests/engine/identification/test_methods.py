@@ -45,6 +45,23 @@ def test_clean_data_give_the_model_back(theta, method):
     assert found.fit_pct > 90 if within > 1e-6 else found.fit_pct > 99.9999
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_the_tangent_of_a_noisy_curve_is_not_that_of_its_noise(seed):
+    """exp(-3 s)/((10 s + 1)(3 s + 1)) bends where exp(-t/10)/10 = exp(-t/3)/3; noise makes it steeper."""
+    t = np.linspace(0.0, 88.0, 200)
+    step = t[np.searchsorted(t, 5.0)]
+
+    def rise(after):
+        return 1 - (10 * np.exp(-after / 10) - 3 * np.exp(-after / 3)) / 7
+
+    y = rise(np.maximum(t - step - 3, 0)) + 0.015 * np.random.default_rng(seed).standard_normal(t.size)
+    found = identify(make_record(t, np.where(t >= step, 1.0, 0.0), y), "tangent").fitted.model
+    bend = np.log(10 / 3) * 30 / 7
+    slope = (np.exp(-bend / 10) - np.exp(-bend / 3)) / 7
+    assert found.tau == pytest.approx(1 / slope, rel=0.25)
+    assert found.theta == pytest.approx(3 + bend - rise(bend) / slope, rel=0.25)
+
+
 @pytest.mark.slow
 def test_intervals_hold_the_truth_in_nine_runs_of_ten():
     inside, runs = {"K": 0, "tau": 0, "theta": 0}, 0

@@ -66,7 +66,9 @@ class StepTest:
         high = math.inf if self.u_max is None else self.u_max
         if not low <= u0 <= high:
             raise InvalidInput("the input begins outside its limits", field="u_min")
-        change = min(max(u0 + self.size, low), high) - u0
+        wanted = u0 + self.size
+        # What no limit cuts short is the size itself, without the rounding of a sum and a difference.
+        change = self.size if low <= wanted <= high else min(max(wanted, low), high) - u0
         if not change:
             raise InvalidInput("the input is at its limit: it cannot step that way", field="size")
         return change

@@ -17,8 +17,8 @@ _COMMENT = ("#", "%", "//", "!")
 _UNIT = re.compile(r"^(.*?)\s*(?:[\[(]([^\])]*)[\])]|[/,]\s*(\S+))?\s*$")
 _KNOWN = {
     "t": {"t", "time", "zeit", "temps", "tid", "tiempo", "tempo"},
-    "u": {"u", "input", "in", "mv", "op", "co", "m", "valve", "step"},
-    "y": {"y", "output", "out", "pv", "measurement", "c"},
+    "u": {"u", "input", "in", "mv", "op", "co", "m", "valve", "step", "eingang", "stellgröße"},
+    "y": {"y", "output", "out", "pv", "measurement", "c", "ausgang", "istwert", "messwert"},
 }
 _TIME_UNITS = {
     **dict.fromkeys(("s", "sec", "secs", "second", "seconds"), "s"),
@@ -111,8 +111,8 @@ def read_csv(text: str, columns: Mapping[str, str] | None = None) -> Columns:
 
     Cells are parted by semicolons, tabs or commas (the first of these that the first line has); with semicolons and
     tabs a decimal comma is understood. A first line that is not numbers is the header, with units as in ``t [min]``,
-    ``T (K)``. Empty lines and lines that begin with # % ! or // are passed over; empty cells, NA, NaN and - are
-    missing values.
+    ``T (K)``, or in a row of their own below it. Empty lines and lines that begin with # % ! or // are passed over;
+    empty cells, NA, NaN and - are missing values.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def read_csv(text: str, columns: Mapping[str, str] | None = None) -> Columns:
     delimiter, places = "", dict[str, int]()
     names: dict[str, str] = {}
     units: dict[str, str] = {}
-    width = 0
+    width, below_header = 0, False
     out: dict[str, list[float | None]] = {"t": [], "u": [], "y": []}
     for number, line in enumerate(lines, 1):
         if "\0" in line:
@@ -152,12 +152,26 @@ def read_csv(text: str, columns: Mapping[str, str] | None = None) -> Columns:
             places = _places(header if is_header else [""] * width, columns or {}, number)
             if is_header:
                 names, units = _named(header, places)
+                below_header = True
                 continue
-        _row(_cells(line, number, delimiter), number, width, delimiter, places, out)
+        cells = _cells(line, number, delimiter)
+        if below_header and _is_units(cells, places, delimiter):
+            units = {role: cells[k].strip("[]() ")[:20] for role, k in places.items()}
+        else:
+            _row(cells, number, width, delimiter, places, out)
+        below_header = False
     if not out["t"]:
         raise InvalidInput("there are no rows of numbers in the CSV text", field="csv")
     times = [v for v in out["t"] if v is not None]
     return Columns(times, out["u"], out["y"], names, units, _TIME_UNITS.get(units.get("t", "").lower()))
+
+
+def _is_units(cells: Sequence[str], places: Mapping[str, int], delimiter: str) -> bool:
+    """Whether a row stands for units: no number in it, and not even a digit where the time is."""
+    if len(cells) <= max(places.values()) or any(char.isdigit() for char in cells[places["t"]]):
+        return False
+    values = [_number(cells[k], delimiter) for k in places.values()]
+    return values[0] is None and all(value is None or math.isnan(value) for value in values)
 
 
 def _named(header: Sequence[str], places: Mapping[str, int]) -> tuple[dict[str, str], dict[str, str]]:
