@@ -7,7 +7,7 @@
 
 import { controllerOf, controlRequest, filledIn, systemOf } from "./experiment-requests.js";
 
-const POINTS = 500;
+const POINTS = 1000;
 const METRICS = /** @type {const} */ (["overshoot_pct", "t_rise", "t_settle", "IAE", "TV"]);
 const MARGINS = /** @type {const} */ (["GM_dB", "PM_deg", "Ms"]);
 
@@ -26,7 +26,7 @@ function sidesOf({ responses, setpoint, load, margins, closed_loop_stable }, { s
   /** @param {"setpoint" | "load"} name @param {Record<string, any>} metrics @returns {Side} */
   const side = (name, metrics) => {
     const response = responses[name];
-    const values = Object.fromEntries([...METRICS.map((key) => [key, metrics[key] ?? null]), ...MARGINS.map((key) => [key, margins[key]])]);
+    const values = Object.fromEntries([...METRICS.map((key) => [key, metrics[key] ?? null]), ...MARGINS.map((key) => [key, closed_loop_stable ? margins[key] : null])]);
     for (const key of ["IAE", "TV"]) if (values[key] !== null) values[key] *= Math.abs(size);
     return {
       curve: { t: [...response.t], y: [...response.y].map((value) => y + size * value), u: [...response.u].map((value) => u + size * value) },

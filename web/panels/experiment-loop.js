@@ -159,7 +159,7 @@ export function mount(step, bench, api) {
     const { outputName = "y", inputName = "u", outputUnit = "", inputUnit = "" } = source ?? about ?? {};
     const unit = (/** @type {string} */ name, /** @type {string} */ of) => (of ? `${name} [${of}]` : name);
     const figure = promisedLoopPlot(
-      { true_: true_?.curve ?? { t: [], y: [], u: [] }, promised: promised?.curve ?? null, r: { t: [0, end], y: [level, level] }, until: settled.length === 2 ? Math.min(end, SHOWN * Math.max(...settled)) : end, yName: unit(outputName, outputUnit), uName: unit(inputName, inputUnit), timeUnit: source?.timeUnit || about?.timeUnit || "as recorded" },
+      { true_: true_?.curve ?? { t: [], y: [], u: [] }, promised: promised?.curve ?? null, r: { t: [0, end], y: [level, level] }, until: settled.length === 2 || (true_?.stable === false && settled.length === 1) ? Math.min(end, SHOWN * Math.max(...settled)) : end, yName: unit(outputName, outputUnit), uName: unit(inputName, inputUnit), timeUnit: source?.timeUnit || about?.timeUnit || "as recorded" },
       theme,
       { ranges, moving: false },
     );

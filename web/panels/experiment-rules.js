@@ -9,6 +9,7 @@ import { tuneRequest } from "../core/experiment-requests.js";
 import { formatNumber, formatWithUnit, greek, sentence, UNDEFINED } from "../core/format.js";
 import { groupBy } from "../core/groups.js";
 import { patiently } from "../core/patience.js";
+import { unitRatio } from "../core/units.js";
 import { h, setText } from "../components/dom.js";
 import { captioned, headRow } from "../components/facts.js";
 import { showMath } from "../components/mathml.js";
@@ -83,8 +84,10 @@ export function mount(step, bench, api) {
     const refused = groupBy(ours.filter((setting) => !setting.valid), ({ reason }) => reason ?? "the plant is outside its range");
     const unit = bench.source?.timeUnit || bench.about?.timeUnit || "";
     const time = unit ? ` [${unit}]` : "";
+    const { inputUnit = "", outputUnit = "" } = bench.source ?? bench.about ?? {};
+    const gain = unitRatio(inputUnit, outputUnit);
     table.replaceChildren(
-      valid.length > 0 ? captioned(`${type} by rules, ideal form`, h("table", { class: "values" }, headRow(["Rule", "Kc", `τI${time}`, `τD${time}`, ""]), h("tbody", {}, ...valid.map(row)))) : h("p", { class: "empty" }, `No rule gives a ${type} controller here. Choose another type.`),
+      valid.length > 0 ? captioned(`${type} by rules, ideal form`, h("table", { class: "values" }, headRow(["Rule", gain ? `Kc [${gain}]` : "Kc", `τI${time}`, `τD${time}`, ""]), h("tbody", {}, ...valid.map(row)))) : h("p", { class: "empty" }, `No rule gives a ${type} controller here. Choose another type.`),
       ...(refused.size > 0 ? [h("details", { class: "step-fold" }, h("summary", {}, ours.length - valid.length === 1 ? "One rule does not apply" : `${ours.length - valid.length} rules do not apply`), ...[...refused].map(([reason, all]) => h("p", { class: "finding" }, h("strong", {}, all.map(({ name }) => name).join(", ")), `: ${greek(sentence(reason))}`)))] : []),
     );
     if (focused) /** @type {HTMLElement | null} */ (table.querySelector(`[aria-label="${CSS.escape(focused)}"]`))?.focus();

@@ -36,26 +36,26 @@ function decoded(bytes) {
 export function mount(step, bench, api) {
   let asked = 0;
   let typing = 0;
-  const from = h("p", { class: "field-hint" });
+  const origin = h("p", { class: "field-hint" });
   const text = h("textarea", { class: "record-text", rows: 6, placeholder: SAMPLE, spellcheck: "false", "aria-label": "Record as text", "aria-describedby": "record-hint" });
   const file = h("input", { type: "file", accept: ".csv,.txt,.tsv,.dat,text/*", class: "visually-hidden", tabindex: -1, "aria-hidden": "true" });
   const pickFile = h("button", { type: "button", class: "button", onclick: () => file.click() }, "Choose a file");
   const back = h("button", { type: "button", class: "button", hidden: true, onclick: () => bench.finish() }, "Back to the step test");
-  const before = number("u before the record, if it begins with the step", { value: null, optional: true }, () => take());
+  const earlier = number("u before the record, if it begins with the step", { value: null, optional: true }, () => take());
   const columns = h("div", { class: "step-fields" });
   const own = h(
     "details",
     { class: "step-fold record-drop" },
     h("summary", {}, "Use a record of your own"),
-    h("div", { class: "step-fields" }, h("p", { class: "field-hint", id: "record-hint" }, HINT), text, h("div", { class: "row" }, pickFile, file, h("span", { class: "field-hint" }, "or drop it here")), columns, before),
+    h("div", { class: "step-fields" }, h("p", { class: "field-hint", id: "record-hint" }, HINT), text, h("div", { class: "row" }, pickFile, file, h("span", { class: "field-hint" }, "or drop it here")), columns, earlier),
   );
-  step.side.append(from, back, own, step.message);
+  step.side.append(origin, back, own, step.message);
 
   /** @param {{t: string, u: string, y: string} | null} [named] */
   function take(named = null) {
     clearTimeout(typing);
     if (text.value.trim() === "") return;
-    bench.setSource({ from: "text", data: null, csv: text.value, columns: named, u_before: before.value, timeUnit: "", inputUnit: "", outputUnit: "", inputName: "u", outputName: "y" });
+    bench.setSource({ from: "text", data: null, csv: text.value, columns: named, u_before: earlier.value, timeUnit: "", inputUnit: "", outputUnit: "", inputName: "u", outputName: "y" });
   }
   text.addEventListener("input", () => {
     clearTimeout(typing);
@@ -101,14 +101,14 @@ export function mount(step, bench, api) {
 
   /** Shows the line that the server names. @param {string} csv @param {string} message */
   function point(csv, message) {
-    const [, number] = /^line (\d+)/.exec(message) ?? [];
+    const place = Number(/^line (\d+)/.exec(message)?.[1]);
     const lines = csv.split(/\r\n|\r|\n/);
-    const bad = lines[Number(number) - 1];
-    if (!number || bad === undefined) return;
+    const bad = lines[place - 1];
+    if (bad === undefined) return;
     step.say(`${step.message.textContent} It reads: ${bad.slice(0, SHOWN)}${bad.length > SHOWN ? "…" : ""}`, true);
-    const from = lines.slice(0, Number(number) - 1).reduce((sum, line) => sum + line.length + 1, 0);
-    text.setSelectionRange(from, from + bad.length);
-    text.scrollTop = Math.max(0, Number(number) - 3) * (text.scrollHeight / lines.length);
+    const before = lines.slice(0, place - 1).reduce((sum, line) => sum + line.length + 1, 0);
+    text.setSelectionRange(before, before + bad.length);
+    text.scrollTop = Math.max(0, place - 3) * (text.scrollHeight / lines.length);
   }
 
   async function ask() {
@@ -148,7 +148,7 @@ export function mount(step, bench, api) {
   function show() {
     const { source } = bench;
     back.hidden = !(source?.from === "text" && bench.result?.kind === "step");
-    setText(from, !source ? "Make a step test above, or use a record of your own." : source.from === "text" ? "The record is your own. No plant stands behind it: step 5 shows the model's promise alone." : "The record is that of the step test above.");
+    setText(origin, !source ? "Make a step test above, or use a record of your own." : source.from === "text" ? "The record is your own. No plant stands behind it: step 5 shows the model's promise alone." : "The record is that of the step test above.");
     void ask();
   }
   bench.on(["source"], show);

@@ -97,6 +97,12 @@ export function runawayExtent(values, scale) {
   return [Math.max(low, -reach), Math.min(high, reach)];
 }
 
+/** Room on the left for the labels of these axes: powers of ten take more of it. @param {...Range} ranges */
+export function leftMargin(...ranges) {
+  const wide = ranges.some(([low, high]) => Math.max(Math.abs(low), Math.abs(high)) >= 1e5 || high - low < 5e-3);
+  return wide ? 86 : 62;
+}
+
 /**
  * What all plots have in common.
  * @param {Theme} theme

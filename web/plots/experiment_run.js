@@ -3,7 +3,7 @@
 /** @import {Figure, Range, Theme, Trace} from "../core/types.js" */
 /** @import {Held} from "./axes.js" */
 
-import { axis, baseLayout, extent, niceRange } from "./axes.js";
+import { axis, baseLayout, extent, leftMargin, niceRange } from "./axes.js";
 import { escapePlotly } from "./escape.js";
 import { lineOf } from "./signals.js";
 
@@ -53,7 +53,7 @@ export function experimentRunPlot({ y, u, r, turns, window, yRange, uRange, yNam
     ],
     layout: {
       ...baseLayout(theme),
-      margin: { l: 62, r: 14, t: 8, b: 40 },
+      margin: { l: leftMargin(ranges.yaxis, ranges.yaxis2), r: 14, t: 8, b: 40 },
       xaxis: axis(theme, `time [${unit}]`, window, { anchor: "y2", zeroline: false }),
       yaxis: axis(theme, escapePlotly(yName), ranges.yaxis, { domain: [0.36, 1], zeroline: false }),
       yaxis2: axis(theme, escapePlotly(uName), ranges.yaxis2, { domain: [0, 0.27], nticks: 4, zeroline: false }),

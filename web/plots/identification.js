@@ -6,7 +6,7 @@
 
 import { LINES } from "../core/construction.js";
 import { stairs } from "../core/stairs.js";
-import { axis, baseLayout, extent, holdRange } from "./axes.js";
+import { axis, baseLayout, extent, holdRange, leftMargin } from "./axes.js";
 import { escapePlotly } from "./escape.js";
 import { lineOf } from "./signals.js";
 
@@ -49,7 +49,7 @@ export function identificationPlot({ record, y_hat, residuals, lines, drawn, rea
     ],
     layout: {
       ...baseLayout(theme),
-      margin: { l: 62, r: 14, t: 22, b: 40 },
+      margin: { l: leftMargin(ranges.yaxis, ranges.yaxis2, ranges.yaxis3), r: 14, t: 22, b: 40 },
       xaxis: axis(theme, `time [${unit}]`, span, { anchor: "y3", zeroline: false }),
       yaxis: axis(theme, escapePlotly(yName), ranges.yaxis, { domain: [0.45, 1], zeroline: false }),
       yaxis2: axis(theme, "residual", ranges.yaxis2, { domain: [0.21, 0.38], nticks: 3 }),
