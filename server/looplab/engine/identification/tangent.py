@@ -19,7 +19,7 @@ def tangent(data: StepData, choices: Choices | None = None, to_63: bool = False)
     Parameters
     ----------
     data : StepData
-        Smoothed; the inflection is the sample with the steepest slope.
+        Smoothed; the inflection is the sample with the steepest slope on the way to 63.2 %.
     choices : Choices or None
         A tangent drawn by hand: where it touches and its slope, each taken from the curve where left out.
     to_63 : bool
@@ -47,7 +47,7 @@ def tangent(data: StepData, choices: Choices | None = None, to_63: bool = False)
     way = float(np.sign(data.y_final - data.y0))
     t = choices.t_inflection
     if t is None:
-        t = float(data.t[int(np.argmax(way * data.dy))])
+        t = data.steepest()
     on_curve, slope_there = data.at(t)
     y = on_curve if choices.y_inflection is None else choices.y_inflection
     slope = slope_there if choices.slope is None else choices.slope
