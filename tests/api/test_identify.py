@@ -4,6 +4,7 @@ import math
 from typing import Any
 
 import pytest
+from fastapi.testclient import TestClient
 
 from looplab.api.answers.experiments import IdentifyAnswer, RelayAnswer, StepTestAnswer, UltimateCycleAnswer
 
@@ -39,6 +40,17 @@ def test_what_cannot_be_read(post: Any, request_: dict[str, Any], path: str, wor
     assert refused.status_code == 422
     assert word in refused.json()["error"]["message"]
     assert refused.json()["error"]["path"] == path
+
+
+def test_a_fit_past_its_budget_says_so(post: Any, client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    t = [0.1 * k for k in range(3000)]
+    u = [math.sin(0.01 * k * k) for k in range(3000)]
+    request = {"data": {"t": t, "u": u, "y": [math.tanh(v) for v in u]}, "method": "least_squares_sopdt"}
+    monkeypatch.setattr(client.app.state.workers, "budget", 0.02)
+    refused = post("/identify", request)
+    assert refused.status_code == 422
+    assert "0.02 s of computing" in refused.json()["error"]["message"]
+    assert refused.json()["error"]["path"] == "method"
 
 
 def test_uploads_may_be_larger_than_other_requests(post: Any) -> None:

@@ -94,8 +94,10 @@ def test_step_response_of_an_integrator_with_dead_time(loop_of: Ask) -> None:
     assert np.abs(np.array(step["setpoint"]["u"]) - Kc * (1 - exact)).max() < 1e-11
 
 
+# Fifty lags cost seconds, and differ in their numbers, not in how these are written.
+SLOW = "1/(s+1)^50"
 PLANTS = ["1/(s+1)^3", "exp(-0.1s)/(.5s+1)", "exp(-s)", "4", "0", "1/s", "-1/(s+1)", "1/(s^2+1)", "s/(s+1)",
-          "(s^2+1)/(s+1)^3", "exp(-s)(2s+1)/(s+1)", "1/(s-1)", "1/(s+1)^50", "exp(-20s)/(s+1)"]  # fmt: skip
+          "(s^2+1)/(s+1)^3", "exp(-s)(2s+1)/(s+1)", "1/(s-1)", SLOW, "exp(-20s)/(s+1)"]  # fmt: skip
 SETTINGS = [
     {"Kc": 0.5, "tau_I": 2, "tau_D": 0.5},
     {"Kc": 0},
@@ -105,9 +107,11 @@ SETTINGS = [
 ]
 
 
-@pytest.mark.parametrize("plant", PLANTS)
+ENCODED = [(plant, arrays) for plant in PLANTS for arrays in ("list", "f4") if (plant, arrays) != (SLOW, "f4")]
+
+
+@pytest.mark.parametrize(("plant", "arrays"), ENCODED)
 @pytest.mark.parametrize("settings", SETTINGS, ids=str)
-@pytest.mark.parametrize("arrays", ["list", "f4"])
 def test_every_answer_has_the_described_shape(post: Any, plant: str, settings: dict[str, Any], arrays: str) -> None:
     loop = {"plant": {"type": "expr", "text": plant}, "controller": {"type": "pid", **settings}}
     answer = post("/loop", {"loop": loop, "want": get_args(PanelName), "arrays": arrays})

@@ -6,7 +6,7 @@ import re
 import pytest
 from playwright.sync_api import Page, expect
 
-from workbench import chip, curve, field, open_analyses, settled
+from workbench import chip, curve, field, open_analyses, open_workbench, settled
 
 FOPDT = "plant=fopdt&K=1&tau=5&theta=1&type=PI&Kc=2&tau_I=5"
 RULES = "compare.rules=ziegler_nichols_reaction.PI,simc.PI"
@@ -162,3 +162,36 @@ def test_a_controller_that_is_not_PI_is_told_so(page: Page):
     page.locator("#panel-gain_map").get_by_role("button", name="Use SIMC").click()
     expect(handle(page)).to_be_visible()
     expect(field(page, "Kc")).to_have_value("0.5")
+
+
+def test_the_closed_loop_time_is_the_students(page: Page):
+    """SIMC on K=1, tau=5, theta=1 with tau_c = 3: Kc = 5/(3 + 1), tau_I = min(5, 4 (3 + 1))."""
+    open_workbench(page, f"{FOPDT}&show=step")
+    page.locator("#card-tune .card-toggle").click()
+    own = page.get_by_label("closed-loop time constant tau c, in s")
+    own.fill("3")
+    own.press("Enter")
+    expect(page).to_have_url(re.compile("tune.tau_c=3"))
+    simc = page.locator("#card-tune details").filter(has_text="SIMC")
+    simc.locator("summary").click()
+    expect(simc.locator(".setting").first).to_contain_text("1.250")
+    expect(simc.locator(".setting").first).to_contain_text("5.000")
+
+
+def test_the_slider_from_robust_to_fast_sets_the_best_gains(page: Page):
+    """Whatever it sets has the Ms that it says; to the left is slower and more robust."""
+    open_workbench(page, f"{FOPDT}&signal=load&show=step")
+    page.locator("#card-trade-off .card-toggle").click()
+    limit = page.get_by_label("Ms up to", exact=True)
+    for Ms, words in (("1.7", "No PI does much better"), ("1.35", "No PI does much better")):
+        limit.fill(Ms)
+        limit.press("Enter")
+        expect(page.locator("#card-trade-off")).to_contain_text(words)
+        settled(page)
+        assert abs(float(chip(page, "Ms").inner_text()) / float(Ms) - 1) < 0.03
+    expect(limit).to_have_value("1.35")
+    field(page, "tau_I").fill("20")
+    field(page, "tau_I").press("Enter")
+    expect(page.locator("#card-trade-off")).to_contain_text("The best PI with this Ms reaches")
+    page.get_by_role("radio", name="PD").check()
+    expect(page.locator("#card-trade-off")).to_contain_text("choose one in the Controller card")

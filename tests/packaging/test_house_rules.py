@@ -125,6 +125,21 @@ def test_slow_packages_are_imported_late():
     assert late & set(run.stdout.split()) == set()
 
 
+def test_no_module_hides_what_its_package_exports():
+    """A module `a.b` takes the place of a name `b` that `a` has from elsewhere, as soon as anyone imports it."""
+    hidden = set()
+    for path in modules(""):
+        if path.name != "__init__.py":
+            continue
+        package = ".".join(path.relative_to(REPOSITORY / "server").parts[:-1])
+        siblings = {child.stem for child in path.parent.iterdir() if child.suffix == ".py" or child.is_dir()}
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom):
+                names = {alias.asname or alias.name for alias in node.names} & siblings
+                hidden |= {f"{package}.{name}" for name in names if node.module not in {package, f"{package}.{name}"}}
+    assert hidden == set()
+
+
 def test_the_lock_satisfies_what_is_declared():
     lines = (REPOSITORY / "requirements.lock").read_text(encoding="utf-8").splitlines()
     pins = [Requirement(line) for line in lines if not line.startswith("#")]

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from looplab.engine.nonlinear.simulation import simulate_open_loop
+from looplab.engine.nonlinear.steady_states import steady_state_near
 from looplab.plants import load_plant
+from looplab.schemas import PlantSystem
 
 TRIMS = {1: lambda x: x, 2: lambda x: 50 ** (x - 1), 3: math.sqrt}
 
@@ -127,6 +129,16 @@ def test_the_pump_delivers_where_the_curves_meet(trim):
         assert run.y[-1] == pytest.approx([F, 1000 * 9.81 * (40 - 0.00625 * F**2) / 1e5], rel=1e-9)
         flows.append(F), pressures.append(run.y[-1, 1])
     assert flows == sorted(flows) and pressures == sorted(pressures, reverse=True)
+
+
+def test_the_pump_at_rest_leads_to_where_the_curves_meet():
+    """Without flow no derivative is left to follow; in a loop the plant stands where the curves meet all the same."""
+    model = load_plant("pump-valve")
+    u, p = model.inputs({"x_v": 0.3}), model.parameters({"trim": 1})
+    valve = 1e5 / (1000 * 9.81) / (120 * 0.3) ** 2
+    found = steady_state_near(model, u, p, model.initial_state(u, p))
+    assert found.x[0] == pytest.approx(math.sqrt(30 / (0.00625 + 0.005 + valve)), rel=1e-9)
+    assert PlantSystem(type="plant", id="pump-valve", input="x_v", output="F").to_engine().dc_gain > 0
 
 
 def test_a_closed_valve_leaks():

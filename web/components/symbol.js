@@ -10,6 +10,7 @@ export const SYMBOLS = {
   Kd: { base: "K", sub: "d", spoken: "derivative gain Kd" },
   tau_I: { base: "τ", sub: "I", spoken: "integral time tau I" },
   tau_D: { base: "τ", sub: "D", spoken: "derivative time tau D" },
+  tau_c: { base: "τ", sub: "c", spoken: "closed-loop time constant tau c" },
   beta: { base: "β", spoken: "setpoint weight beta" },
   alpha: { base: "α", spoken: "derivative filter alpha" },
   K: { base: "K", spoken: "process gain K" },

@@ -12,6 +12,9 @@ export const MOST_RULES = 6;
 /** How wrong a model may be, in per cent, and how far Ms may be let go: as the server has them. */
 export const SPREAD = { min: 1, max: 90 };
 export const MS_LIMIT = { min: 1.05, max: 4 };
+/** What some rules leave to the user, within what the server takes. */
+export const TAU_C = { min: 0, max: 1e6 };
+export const PM_DEG = { min: 1, max: 89 };
 const RULE = /^([a-z_0-9]+)\.(P|PI|PD|PID)$/;
 
 /** @returns {AnalysesView} */
@@ -24,6 +27,7 @@ export function startingAnalyses() {
     cancel_tolerance: 1e-8,
     compare: { rules: ["ziegler_nichols", "amigo", "simc"].map((rule) => ({ rule, type: "PI" })), spread_pct: null, true_plant: "" },
     Ms_limit: 1.6,
+    tune: { tau_c: null, PM_deg: 45 },
   };
 }
 
@@ -33,7 +37,7 @@ function same(a, b) {
 }
 
 /** Only what is not as it starts. @param {URLSearchParams} query @param {AnalysesView} analyses */
-export function analysesToQuery(query, { response, laplace, polynomial, model_type, cancel_tolerance, compare, Ms_limit }) {
+export function analysesToQuery(query, { response, laplace, polynomial, model_type, cancel_tolerance, compare, Ms_limit, tune }) {
   const start = startingAnalyses();
   if (response.of !== start.response.of) query.set("response.of", response.of);
   if (!same(response.input, start.response.input)) inputToQuery(query, "response", response.input);
@@ -51,6 +55,8 @@ export function analysesToQuery(query, { response, laplace, polynomial, model_ty
   if (compare.spread_pct !== null) query.set("compare.spread_pct", String(compare.spread_pct));
   if (compare.true_plant !== "") query.set("compare.true_plant", compare.true_plant);
   if (Ms_limit !== start.Ms_limit) query.set("Ms_limit", String(Ms_limit));
+  if (tune.tau_c !== null) query.set("tune.tau_c", String(tune.tau_c));
+  if (tune.PM_deg !== start.tune.PM_deg) query.set("tune.PM_deg", String(tune.PM_deg));
 }
 
 /** @param {string} text @returns {CompareView["rules"]} */
@@ -77,6 +83,8 @@ export function analysesFromQuery(query) {
   const [tolerance] = list("cancel_tolerance") ?? [];
   const [spread] = list("compare.spread_pct") ?? [];
   const [limit] = list("Ms_limit") ?? [];
+  const [tau_c] = list("tune.tau_c") ?? [];
+  const [PM_deg] = list("tune.PM_deg") ?? [];
   const within = (/** @type {number | undefined} */ value, /** @type {{min: number, max: number}} */ { min, max }) => value !== undefined && value >= min && value <= max;
   const rules = query.get("compare.rules");
   return {
@@ -100,5 +108,9 @@ export function analysesFromQuery(query) {
       true_plant: query.get("compare.true_plant")?.slice(0, 500) ?? "",
     },
     Ms_limit: within(limit, MS_LIMIT) ? (limit ?? start.Ms_limit) : start.Ms_limit,
+    tune: {
+      tau_c: within(tau_c, TAU_C) ? (tau_c ?? null) : null,
+      PM_deg: within(PM_deg, PM_DEG) ? (PM_deg ?? start.tune.PM_deg) : start.tune.PM_deg,
+    },
   };
 }

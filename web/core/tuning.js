@@ -4,13 +4,15 @@
 /** @import {ComparedRow, CompareAnswer, GainMapAnswer, Optimum, TradeOffPoint} from "./analysis-types.js" */
 /** @import {ControllerType, RuleChoice, State, System, TuneSetting} from "./types.js" */
 
-import { controllerJson } from "./loop.js";
+import { controllerJson, hasIntegral } from "./loop.js";
 
 /** As many loops as the server simulates over a spread of plants in one go. */
 const AT_ONCE = { single: 12, spread: 4 };
 const GRID = [32, 32];
 /** Around the present gain, where stability suggests no window. */
 const AROUND = 30;
+/** What the slider from robust to fast passes: as many limits of Ms as the server searches in one go. */
+export const LIMITS = [1.15, 1.3, 1.45, 1.6, 1.8, 2, 2.3, 2.6];
 
 /** @typedef {{plant: System, type: ControllerType, aim: "setpoint" | "load", Ms_limit: number}} Search */
 /** @typedef {{search: Search, true_plant: System | null, now: object, rules: RuleChoice[], spread_pct: number | null}} CompareRequest */
@@ -102,5 +104,37 @@ export async function gainMap(api, { Ms_limit, type, ...search }, Kc) {
     tradeOff: tradeOff.points ?? [],
     optimum: optimum.controller ? optimum : null,
     reason: optimum.reason ?? null,
+  };
+}
+
+/** Without integral action the error never ends, and there is nothing to weigh. @param {State} state */
+export function tradeOffRequest(state) {
+  const { type } = state.controller;
+  if (!hasIntegral(type)) return null;
+  return { plant: state.plant, type, aim: state.view.signal, Ms_limits: LIMITS };
+}
+
+/**
+ * The best settings for a limit of Ms between those that were searched, and the error they come to: by geometric
+ * interpolation, so that a slider moves them evenly.
+ * @param {TradeOffPoint[]} points  in increasing order
+ * @param {number} Ms
+ * @returns {{Kc: number, tau_I: number | null, tau_D: number | null, alpha: number, value: number | null} | null}  null outside of what can be kept
+ */
+export function betweenLimits(points, Ms) {
+  const found = points.flatMap(({ Ms_limit, optimum }) => (optimum ? [{ Ms_limit, ...optimum.controller, value: optimum.value }] : []));
+  const after = found.findIndex(({ Ms_limit }) => Ms_limit >= Ms);
+  const high = found[after];
+  const low = found[high && high.Ms_limit > Ms ? after - 1 : after];
+  if (!low || !high) return null;
+  const share = high === low ? 0 : (Ms - low.Ms_limit) / (high.Ms_limit - low.Ms_limit);
+  /** @param {number | null} a @param {number | null} b */
+  const between = (a, b) => (a && b ? Number((Math.sign(a) * Math.abs(a) ** (1 - share) * Math.abs(b) ** share).toPrecision(4)) : a);
+  return {
+    Kc: between(low.Kc, high.Kc) ?? low.Kc,
+    tau_I: between(low.tau_I, high.tau_I),
+    tau_D: between(low.tau_D, high.tau_D),
+    alpha: low.alpha,
+    value: between(low.value, high.value),
   };
 }

@@ -60,6 +60,13 @@
  */
 
 /**
+ * What some tuning rules leave to the user.
+ * @typedef {object} RuleOptions
+ * @property {number | null} tau_c  closed-loop time constant of IMC, lambda tuning and SIMC; null is each rule's own
+ * @property {number} PM_deg  phase margin that the relay rule aims at
+ */
+
+/**
  * What the analyses are asked beside the loop.
  * @typedef {object} AnalysesView
  * @property {ResponseView} response
@@ -69,6 +76,7 @@
  * @property {number} cancel_tolerance  up to this distance a zero cancels a pole
  * @property {CompareView} compare
  * @property {number} Ms_limit  what the optimal settings may reach
+ * @property {RuleOptions} tune
  */
 
 /**

@@ -33,6 +33,7 @@ import * as stability from "../panels/stability.js";
 import * as stateSpace from "../panels/state-space.js";
 import * as step from "../panels/step.js";
 import * as testCard from "../panels/test-card.js";
+import * as tradeOffCard from "../panels/trade-off-card.js";
 import * as tuneCard from "../panels/tune-card.js";
 import * as verdictBar from "../panels/verdict-bar.js";
 import * as viewBar from "../panels/view-bar.js";
@@ -81,7 +82,7 @@ const rail = place("rail");
 loopDiagram.mount(rail, store, api);
 // On a narrow page the sliders should be the first thing under the plot.
 plantCard.mount(rail, store, api, { open: !NARROW.matches });
-for (const panel of [controllerCard, instrumentsCard, tuneCard, testCard]) panel.mount(rail, store, api);
+for (const panel of [controllerCard, instrumentsCard, tuneCard, tradeOffCard, testCard]) panel.mount(rail, store, api);
 viewBar.mount(place("views"), store, api, { narrow: () => NARROW.matches, plots: PLOTS, analyses: ANALYSES });
 actionsBar.mount(place("actions"), store, api);
 

@@ -7,6 +7,7 @@
 import { formatNumber, formatWithUnit, sentence } from "../core/format.js";
 import { h } from "../components/dom.js";
 import { createPanelFrame } from "../components/panel-frame.js";
+import { createSelectField } from "../components/select-field.js";
 import { onThemeChange, readTheme } from "../components/theme.js";
 import { createFigure } from "../plots/figure.js";
 import { plantRunPlot } from "../plots/plant_run.js";
@@ -15,6 +16,8 @@ const COLOURS = ["y", "y_m", "d", "n"];
 /** ms between two drawings: a curve that grows is smooth at this. */
 const EVERY = 50;
 const FIRST_OUTPUTS = 3;
+/** As many names as a legend can hold; of a plant with more curves the states wait in a list. */
+const LISTED = 12;
 
 /**
  * @param {HTMLElement} host
@@ -29,13 +32,26 @@ export function mount(host, bench, run, options) {
     ...bench.model.states.filter(({ name }) => !isOutput.has(name)).map(({ name }, i) => ({ key: `states.${name}`, name, signal: COLOURS[(i + 1) % COLOURS.length] ?? "y", on: false })),
     ...bench.inputs.map(({ name }, i) => ({ key: `inputs.${name}`, name, signal: "u", on: i === 0 })),
   ];
-  // Curves of a column's hundred states are no legend.
-  const listed = curves.slice(0, 40);
+  const many = curves.length > LISTED;
+  /** Those in the legend. */
+  const listed = new Set(curves.filter(({ key, on }) => on || !many || !key.startsWith("states.")).slice(0, LISTED));
+  const more = createSelectField({
+    label: "Add a curve",
+    groups: [{ label: null, choices: [{ value: "", label: "Choose…" }, ...curves.filter((curve) => !listed.has(curve)).map(({ key, name }) => ({ value: key, label: name }))] }],
+    onChoice(key) {
+      const curve = curves.find((one) => one.key === key);
+      more.show("");
+      if (!curve) return;
+      listed.add(curve);
+      set(curve, true);
+    },
+  });
   const log = h("ol", { class: "run-log", role: "log", "aria-label": "What has happened" });
   const frame = createPanelFrame(host, {
     id: "plant-run",
     title: "Run",
     help: "The plant's outputs and inputs over simulated time. Press a name to show or hide its curve; drag in the plot to zoom in. The menu saves all samples of the run as CSV.",
+    controls: many ? [more.root] : [],
     figure: createFigure,
     table,
   });
@@ -99,23 +115,27 @@ export function mount(host, bench, run, options) {
     frame.show(figure, moving);
   }
 
+  /** @param {typeof curves[number]} curve @param {boolean} on */
+  function set(curve, on) {
+    curve.on = on;
+    // An empty plot tells nothing.
+    if (!curves.some((one) => one.on)) curve.on = true;
+    ranges = {};
+    draw(false);
+    tell();
+  }
+
   function tell() {
     const now = run.values();
     const words = curves.filter(({ on }) => on).map(({ name }) => `${name} is ${formatWithUnit(now[name], bench.unit(name), 4)}`);
     frame.tell(
       `At t = ${formatNumber(run.clock, 4)} ${bench.timeUnit}: ${words.join(", ")}.`,
-      listed.map((curve) => ({
+      curves.filter((curve) => listed.has(curve)).map((curve) => ({
         signal: curve.signal,
         label: curve.name,
         name: isOutput.has(curve.name) ? "output" : curve.key.startsWith("inputs") ? "input" : "state",
         on: curve.on,
-        toggle() {
-          curve.on = !curve.on;
-          if (!curves.some(({ on }) => on)) curve.on = true;
-          ranges = {};
-          draw(false);
-          tell();
-        },
+        toggle: () => set(curve, !curve.on),
       })),
     );
   }

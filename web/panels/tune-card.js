@@ -2,14 +2,16 @@
 
 /** @import {Api} from "../core/api.js" */
 /** @import {Store} from "../core/store.js" */
-/** @import {TuneAnswer, TuneBasis, TuneSetting} from "../core/types.js" */
+/** @import {RuleOptions, TuneAnswer, TuneBasis, TuneSetting} from "../core/types.js" */
 
+import { PM_DEG, TAU_C } from "../core/analyses.js";
 import { formatNumber, formatWithUnit, greek, sentence } from "../core/format.js";
 import { applySetting } from "../core/loop.js";
 import { groupBy } from "../core/groups.js";
 import { createCard } from "../components/card.js";
 import { h } from "../components/dom.js";
 import { showMath } from "../components/mathml.js";
+import "../components/number-field.js";
 import { symbol } from "../components/symbol.js";
 import { toast } from "../components/status-toast.js";
 
@@ -20,22 +22,42 @@ const BASIS = [["Ku", false], ["Pu", true], ["K", false], ["tau", true], ["tau_1
 export function mount(host, store, api) {
   const { answers } = store;
   const out = h("div", { class: "rules" });
-  /** The plant that the rules shown are for. */
+  /** The plant and the choices that the rules shown are for. */
   let shownFor = "";
   /** Rules that the student opened; before that, the first that applies. @type {Set<string> | null} */
   let opened = null;
   const card = createCard(host, { id: "card-tune", title: "Tune", open: false, onToggle: (open) => open && void ask() });
-  card.body.append(out);
+  const tau_c = h("number-field", { name: "tau_c", unit: answers.time_unit, min: TAU_C.min, max: TAU_C.max, optional: true, placeholder: "each rule's own" });
+  const PM_deg = h("number-field", { label: "Phase margin", unit: "°", min: PM_DEG.min, max: PM_DEG.max });
+  tau_c.addEventListener("value-change", () => choose({ tau_c: tau_c.value }));
+  PM_deg.addEventListener("value-change", () => PM_deg.value !== null && choose({ PM_deg: PM_deg.value }));
+  card.body.append(
+    h(
+      "div",
+      { class: "rule-options" },
+      tau_c,
+      h("p", { class: "field-hint" }, "IMC, lambda and SIMC: how fast the closed loop is to be."),
+      PM_deg,
+      h("p", { class: "field-hint" }, "Åström–Hägglund relay: what it aims at."),
+    ),
+    out,
+  );
   card.summarise("fill the gains from a rule");
 
+  /** @param {Partial<RuleOptions>} patch */
+  function choose(patch) {
+    store.setAnalyses({ tune: { ...store.get().view.analyses.tune, ...patch } });
+  }
+
   async function ask() {
-    const { plant } = store.get();
-    const key = JSON.stringify(plant);
+    const { plant, view } = store.get();
+    const request = { plant, ...view.analyses.tune };
+    const key = JSON.stringify(request);
     if (key === shownFor || answers.error) return;
     shownFor = key;
     out.classList.add("stale");
     try {
-      const answer = await api.tune({ plant });
+      const answer = await api.tune(request);
       // A newer plant has been asked for meanwhile.
       if (shownFor !== key) return;
       out.replaceChildren(...families(answer));
@@ -150,10 +172,21 @@ export function mount(host, store, api) {
     for (const rule of out.querySelectorAll(".rule")) rule.classList.toggle("in-force", rule.querySelector(".setting.in-force") !== null);
   }
 
+  function showOptions() {
+    const chosen = store.get().view.analyses.tune;
+    tau_c.value = chosen.tau_c;
+    PM_deg.value = chosen.PM_deg;
+  }
+
   const stopStore = store.subscribe((_, change) => {
-    if (!change.design || change.moving) return;
-    showInForce();
+    if (change.moving) return;
+    if (change.design) showInForce();
+    if (change.view) {
+      showOptions();
+      if (!card.body.hidden) void ask();
+    }
   });
+  showOptions();
   // The rules follow the plant once the server has accepted it.
   const stopAnswers = answers.subscribe(({ moving }) => {
     if (!moving && !card.body.hidden) void ask();

@@ -3,7 +3,6 @@
 from pathlib import Path
 from typing import Annotated
 
-import orjson
 import typer
 from rich.console import Console
 from rich.markup import escape
@@ -12,6 +11,7 @@ from looplab.labs.loader import default_folder, lab_files, read_lab
 from looplab.labs.problems import LabError
 from looplab.labs.schema import json_schema
 from looplab.labs.selftest import run_tests
+from looplab.schemas.schema_file import Output, write_schema
 
 app = typer.Typer(
     name="labs",
@@ -47,22 +47,9 @@ def check(
 
 
 @app.command()
-def schema(
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Write to this file instead of the terminal.")
-    ] = None,
-) -> None:
+def schema(output: Output = None) -> None:
     """Print the JSON schema of a lab, for editors that complete and check while one types."""
-    text = schema_text()
-    if output is None:
-        typer.echo(text, nl=False)
-    else:
-        output.write_text(text, encoding="utf-8")
-
-
-def schema_text() -> str:
-    """What labs/lab.schema.json must hold."""
-    return orjson.dumps(json_schema(), option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE).decode()
+    write_schema(json_schema(), output)
 
 
 def _files(paths: list[Path]) -> list[Path]:

@@ -1,9 +1,11 @@
 """Each method on a first-order response written in closed form, and on data that it must refuse or warn of."""
 
+import math
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.special import gammainc, gammaincinv
 
 from looplab.engine.errors import InvalidInput, RuleNotApplicable
 from looplab.engine.identification.exact_response import model_response
@@ -12,6 +14,7 @@ from looplab.engine.identification.least_squares import Unknowns, least_squares
 from looplab.engine.identification.record import make_record
 from looplab.engine.identification.step_data import Choices
 from looplab.engine.systems import SOPDT
+from looplab.engine.tuning import RULES, KnownPlant
 
 K, TAU, Y0 = -1.7, 1.0, 3.5
 # What each method promises for tau, theta (in tau) and K on clean data with 500 samples over theta + 12 tau.
@@ -60,6 +63,54 @@ def test_the_tangent_of_a_noisy_curve_is_not_that_of_its_noise(seed):
     slope = (np.exp(-bend / 10) - np.exp(-bend / 3)) / 7
     assert found.tau == pytest.approx(1 / slope, rel=0.25)
     assert found.theta == pytest.approx(3 + bend - rise(bend) / slope, rel=0.25)
+
+
+@pytest.mark.parametrize("n", [2, 3, 4, 8])
+def test_the_bias_of_what_reads_points_is_known_in_closed_form(n):
+    """Step response of 1/(s+1)^n: the incomplete gamma function P(n, t), steepest at t = n - 1."""
+    t = np.linspace(0.0, n + 25.0, 6001)
+    record = make_record(t, [1.0] * t.size, gammainc(n, t), u_before=0.0)
+    slope = (n - 1) ** (n - 1) * math.exp(1 - n) / math.factorial(n - 1)
+    t1 = n - 1 - gammainc(n, n - 1) / slope
+    at = {z: float(gammaincinv(n, z)) for z in (1 - math.exp(-1 / 3), 0.353, 1 - math.exp(-1), 0.853)}
+    t28, t35, t63, t85 = at.values()
+    # Area under the beginning: the integral of P(n, t) up to its mean n is n^(n+1) e^-n / n!.
+    tau = n ** (n + 1) * math.exp(1 - n) / math.factorial(n)
+    expected = {
+        "tangent": (1 / slope, t1),
+        "tangent_63": (t63 - t1, t1),
+        "two_point": (1.5 * (t63 - t28), 1.5 * t28 - 0.5 * t63),
+        "sundaresan_krishnaswamy": (0.67 * (t85 - t35), 1.3 * t35 - 0.29 * t85),
+        "area": (tau, n - tau),
+    }
+    for method, found in expected.items():
+        model = identify(record, method).fitted.model
+        assert (model.K, model.tau, model.theta) == pytest.approx((1.0, *found), rel=1e-3), method
+
+
+def test_a_reaction_curve_as_printed():
+    """K. J. Åström, T. Hägglund, PID Controllers, 2nd ed., ISA 1995, ch. 4, the example 1/(s+1)^3: a = K theta/tau read
+    off its step response, and the PID settings of Ziegler and Nichols."""
+    t = np.linspace(0.0, 25.0, 2501)
+    model = identify(make_record(t, [1.0] * t.size, gammainc(3, t), u_before=0.0), "tangent").fitted.model
+    assert f"{model.K * model.theta / model.tau:.3f}" == "0.218"
+    found = KnownPlant(model=model).tune(RULES["ziegler_nichols_reaction"], "PID")
+    assert (f"{found.Kc:.2f}", f"{found.tau_I:.2f}", f"{found.tau_D:.3f}") == ("5.50", "1.61", "0.403")
+
+
+# What each method promises for K, tau, and theta in units of tau + theta, under noise of 2 % of the change.
+UNDER_NOISE = {"tangent": 0.25, "tangent_63": 0.08, "two_point": 0.1, "sundaresan_krishnaswamy": 0.12, "area": 0.13}
+
+
+@pytest.mark.parametrize("method", UNDER_NOISE)
+def test_what_reads_points_keeps_within_its_errors_under_noise(method):
+    within, held = UNDER_NOISE[method], 0
+    for theta in (0.05, 0.3, 1.0, 5.0):
+        for seed in range(50):
+            model = identify(step_record(theta, 200, 0.02, seed, 6.0), method).fitted.model
+            errors = (model.K / K - 1, model.tau / TAU - 1, (model.theta - theta) / (TAU + theta))
+            held += max(map(abs, errors)) <= within
+    assert held >= 180
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from looplab.engine.errors import EngineError, InvalidInput, NonFinite, ParseError
-from looplab.engine.nonlinear import BUILT_IN, Limits, compile_model
+from looplab.engine.nonlinear import BUILT_IN, Limits, compile_model, slowest_time_constant
 from models import CSTR, model, parameters
 
 
@@ -225,3 +225,21 @@ def test_a_parse_error_keeps_its_column():
     with pytest.raises(ParseError) as caught:
         compile_model(changed("states.1.equation", "Fi/V*(Ti - T"))
     assert (caught.value.field, caught.value.column) == ("states[1].equation", 13)
+
+
+@pytest.mark.parametrize(
+    ("equations", "start", "tau"),
+    [
+        # s^2 + 4 s + 2: -2 + sqrt(2) and -2 - sqrt(2).
+        (["x2 - x1", "x1 - 3*x2"], [1, 1], 1 / (2 - math.sqrt(2))),
+        (["x2", "-x2/5"], [0, 0], 5.0),
+        ("-x*x", 2, 0.25),
+        (["x2", "-4*x1 - 0.4*x2"], [0, 0], 0.5),
+        (["x2", "1"], [0, 0], None),
+        ("sqrt(x)", 0, None),
+    ],
+)
+def test_the_slowest_time_constant(equations, start, tau):
+    """Of the poles written by hand: an integrator has none, nor has a slope that is not finite."""
+    found = slowest_time_constant(compile_model(model(equations, start)))
+    assert found == (None if tau is None else pytest.approx(tau, rel=1e-12))

@@ -7,12 +7,14 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from fastapi import APIRouter, Body
 from pydantic import Field, model_validator
+from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from looplab.api.answers.experiments import IdentifyAnswer
-from looplab.api.docs import ERRORS
+from looplab.api.docs import BUSY, ERRORS
 from looplab.api.encode import json_response
 from looplab.api.limits import MAX_UPLOAD
+from looplab.api.simulations import Workers
 from looplab.api.strict import StrictRoute
 from looplab.engine.errors import EngineError
 from looplab.engine.identification.csv_record import Columns, read_csv
@@ -23,6 +25,7 @@ from looplab.engine.identification.least_squares import Unknowns
 from looplab.engine.identification.record import Record, make_record
 from looplab.engine.identification.step_data import Choices
 from looplab.engine.systems import FOPDT, SOPDT
+from looplab.jobs import TooSlow, WorkerPool
 from looplab.schemas import Model, located
 
 router = APIRouter(tags=["identification"], route_class=StrictRoute)
@@ -130,14 +133,19 @@ def _system(model: LowOrder) -> dict[str, Any]:
     return {"type": "tf", "num": [model.K], "den": [1.0, 0.0], "theta": model.theta}
 
 
-def _answer(record: Record, method: MethodName, choices: Choices, unknowns: Unknowns) -> dict[str, Any]:
-    about = {"method": method, "name": METHODS[method].name, "source": METHODS[method].source}
-    found = identify(record, method, choices, unknowns)
+async def _answer(
+    workers: WorkerPool, record: Record, method: MethodName, choices: Choices, unknowns: Unknowns
+) -> dict[str, Any]:
+    try:
+        found = await workers.run(identify, record, method, choices, unknowns)
+    except TooSlow as error:
+        error.field, error.hint = "method", "a record with fewer samples, or a method with fewer unknowns"
+        raise
     fitted, model = found.fitted, found.fitted.model
     intervals = fitted.intervals
     parameters = {"K": model.K, "theta": model.theta} if _system(model)["type"] == "tf" else dict(vars(model))
     return {
-        **about,
+        **_about(method),
         "model": parameters,
         "system": _system(model),
         "fit_pct": found.fit_pct,
@@ -152,11 +160,14 @@ def _answer(record: Record, method: MethodName, choices: Choices, unknowns: Unkn
     }
 
 
+def _about(method: MethodName) -> dict[str, Any]:
+    return {"method": method, "name": METHODS[method].name, "source": METHODS[method].source}
+
+
 def _refused(method: MethodName, error: EngineError) -> dict[str, Any]:
     empty = dict.fromkeys(("model", "system", "fit_pct", "intervals", "y_hat", "residuals"))
-    about = {"method": method, "name": METHODS[method].name, "source": METHODS[method].source}
     rest = {"estimated": {}, "construction": {}, "warnings": [], "reason": error.message}
-    return {**about, **empty, "intervals_note": "the method does not apply", **rest}
+    return {**_about(method), **empty, "intervals_note": "the method does not apply", **rest}
 
 
 def _record(request: IdentifyRequest) -> tuple[Record, Columns | None]:
@@ -170,18 +181,25 @@ def _record(request: IdentifyRequest) -> tuple[Record, Columns | None]:
         return make_record(request.data.t, request.data.u, request.data.y, request.hold, request.u_before), None
 
 
-@router.post("/identify", summary="A model of recorded data", responses={200: {"model": IdentifyAnswer}, **ERRORS})
-def identify_model(request: Annotated[IdentifyRequest, Body(openapi_examples=EXAMPLES)]) -> Response:
+@router.post(
+    "/identify", summary="A model of recorded data", responses={200: {"model": IdentifyAnswer}, **ERRORS, **BUSY}
+)
+async def identify_model(
+    request: Annotated[IdentifyRequest, Body(openapi_examples=EXAMPLES)], workers: Workers
+) -> Response:
     """A first- or second-order or integrating model with dead time, from t, u and y.
 
     Tangent, two points and areas read a step response; least squares takes any input, sampled at any times, and gives
-    95 % confidence intervals. Up to 2 MiB; beyond 5000 samples the record is thinned, and says so.
+    95 % confidence intervals. Up to 2 MiB; beyond 5000 samples the record is thinned, and says so. Each method has 2 s
+    of computing.
     """
-    record, read = _record(request)
+    record, read = await run_in_threadpool(_record, request)
     choices = Choices(**request.step.model_dump())
     unknowns = Unknowns(request.free_start, request.drift)
     try:
-        chosen = _answer(record, request.method, choices, unknowns)
+        chosen = await _answer(workers, record, request.method, choices, unknowns)
+    except TooSlow:
+        raise
     except EngineError as error:
         place = "step" if error.field in StepChoices.model_fields else "csv" if request.data is None else "data"
         error.field = f"{place}.{error.field}" if error.field else place
@@ -190,8 +208,11 @@ def identify_model(request: Annotated[IdentifyRequest, Body(openapi_examples=EXA
     if request.compare:
         methods = []
         for method in METHODS:
+            if method == request.method:
+                methods.append(chosen)
+                continue
             try:
-                methods.append(chosen if method == request.method else _answer(record, method, choices, unknowns))
+                methods.append(await _answer(workers, record, method, choices, unknowns))
             except EngineError as error:
                 methods.append(_refused(method, error))
     about = {

@@ -47,16 +47,15 @@ EXAMPLES: dict[str, Any] = {
     "as it is": {"value": {"horizon": 20, "points": 101}},
     "with another solver": {"value": {"horizon": 5, "points": 51, "method": "BDF"}},
 }
+HELD: dict[str, Any] = {"horizon": 8, "points": 161, "operating_point": "middle"}
+COOLED = {"output": "T", "input": "Q"}
 CONTROL_EXAMPLES: dict[str, Any] = {
     "the reactor held where it is unstable": {
         "value": {
-            "horizon": 8,
-            "points": 161,
-            "operating_point": "middle",
+            **HELD,
             "loops": [
                 {
-                    "output": "T",
-                    "input": "Q",
+                    **COOLED,
                     "setpoint": {"level": 385.1107, "add": [{"type": "step", "amplitude": 5, "start": 1}]},
                     "controller": {"type": "pid", "Kc": 1e6, "tau_I": 0.5, "action": "direct"},
                     "anti_windup": "back_calculation",
@@ -67,13 +66,10 @@ CONTROL_EXAMPLES: dict[str, Any] = {
     },
     "with a sampled controller, noise and a dead time, first in manual": {
         "value": {
-            "horizon": 8,
-            "points": 161,
-            "operating_point": "middle",
+            **HELD,
             "loops": [
                 {
-                    "output": "T",
-                    "input": "Q",
+                    **COOLED,
                     "setpoint": 385.1107,
                     "controller": {"type": "pid", "Kc": 5e5, "tau_I": 1, "action": "direct"},
                     "sampling_time": 0.05,

@@ -25,6 +25,7 @@ from looplab.engine.systems.polynomial import FloatArray
 
 _PER_HALF = 150
 _DOUBLINGS = 16
+_RTOL = 1e-8
 
 
 @dataclass(frozen=True)
@@ -179,11 +180,13 @@ def nonlinear_ring(
     )
     inputs = {name: value for name, value in point.inputs.items() if name != point.input}
     found = simulate_control(
-        point.model, np.linspace(0.0, horizon, points), [loop], inputs, point.parameters, point.initial
+        point.model, np.linspace(0.0, horizon, points), [loop], inputs, point.parameters, point.initial, rtol=_RTOL
     )
     y = point.output_of(found.y)
     signals = found.loops[0]
-    seen = oscillation(found.t, y - point.y0, np.gradient(y, found.t)) if y.size > 2 else Oscillation(y, y, None, None)
+    seen = Oscillation(y, y, None, None)
+    if y.size > 2:
+        seen = oscillation(found.t, y - point.y0, np.gradient(y, found.t), _RTOL * float(np.abs(y).max()))
     return NonlinearRinging(Kc, found.t, signals.r, signals.u, y, seen, found.truncated_at, found.truncated_reason)
 
 

@@ -40,7 +40,7 @@ class Oscillation:
         return None if self.growth is None else float(np.exp(self.growth))
 
 
-def oscillation(t: FloatArray, y: FloatArray, dy: FloatArray) -> Oscillation:
+def oscillation(t: FloatArray, y: FloatArray, dy: FloatArray, noise: float = 0.0) -> Oscillation:
     r"""Turning points of a sampled curve with known slopes, and the growth of its swings.
 
     .. math:: g = 2\,\frac{d \ln|y_{k+1} - y_k|}{dk}
@@ -51,6 +51,8 @@ def oscillation(t: FloatArray, y: FloatArray, dy: FloatArray) -> Oscillation:
     ----------
     t, y, dy : ndarray, shape (n,)
         [time, output, output/time]
+    noise : float
+        Swings below this are an integrator's errors, and do not count [output].
 
     Returns
     -------
@@ -65,7 +67,7 @@ def oscillation(t: FloatArray, y: FloatArray, dy: FloatArray) -> Oscillation:
     swings = np.abs(np.diff(values))
     if swings.size:
         largest = int(swings.argmax())
-        small = np.flatnonzero(swings < _SMALLEST * np.ptp(y))
+        small = np.flatnonzero(swings < max(_SMALLEST * float(np.ptp(y)), noise))
         # What goes before the output moves, and what a decay ends in.
         start = int(small[small <= largest].max(initial=-1)) + 1
         end = int(small[small >= largest].min(initial=swings.size))

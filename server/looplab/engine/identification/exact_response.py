@@ -6,6 +6,8 @@ each tau (and zeta), and every sample is one closed form away from the breakpoin
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from looplab.engine.identification.record import Record, input_changes
@@ -14,6 +16,7 @@ from looplab.engine.systems.integrating import IPDT
 from looplab.engine.systems.polynomial import FloatArray
 
 LowOrder = FOPDT | SOPDT | IPDT
+_FLAT = 1e-8
 
 
 class RecordedInput:
@@ -47,28 +50,40 @@ class RecordedInput:
         if found is not None:
             return found
         size = 2 if len(shape) == 2 else 1
-        states = np.zeros((self.knots.size, size))
-        if self.knots.size > 1:
-            # Over each piece the state goes to M x + f: the f and M of all pieces at once, then the chain.
-            zero = np.zeros((size, self.knots.size - 1))
-            a, b, s = self.a[:-1], self.b[:-1], np.diff(self.knots)
-            f = np.array(_moved(shape, zero, a, b, s))
-            unit = [np.eye(size)[k][:, None] + zero for k in range(size)]
-            M = np.array([_moved(shape, e, 0.0 * a, 0.0 * b, s) for e in unit])
-            if size == 1:
-                x = 0.0
-                chain = [x := m * x + g for m, g in zip(M[0, 0].tolist(), f[0].tolist(), strict=True)]
-                states[1:, 0] = chain
-            else:
-                x, v = 0.0, 0.0
-                columns = (M[0, 0], M[1, 0], M[0, 1], M[1, 1], f[0], f[1])
-                for k, (p, q, r, w, g, h) in enumerate(zip(*(c.tolist() for c in columns), strict=True), 1):
-                    x, v = p * x + q * v + g, r * x + w * v + h
-                    states[k] = x, v
+        # Over each piece the state goes to M x + f: the f and M of all pieces at once.
+        zero = np.zeros((size, self.knots.size - 1))
+        a, b, s = self.a[:-1], self.b[:-1], np.diff(self.knots)
+        f = np.array(_moved(shape, zero, a, b, s)).T
+        unit = [np.eye(size)[k][:, None] + zero for k in range(size)]
+        M = np.array([_moved(shape, e, 0.0 * a, 0.0 * b, s) for e in unit]).T
+        states = np.vstack([np.zeros(size), _chained(M, f)])
         if len(self._states) > 64:
             self._states.clear()
         self._states[shape] = states
         return states
+
+
+def _chained(M: FloatArray, f: FloatArray) -> FloatArray:
+    """x after each of the maps x -> M_k x + f_k in turn, from 0: shape (n, size), with M of shape (n, size, size).
+
+    In rows of about sqrt(n) maps: all rows at once from 0 and from unit vectors, then from where the row before ended.
+    """
+    n, size = f.shape
+    length = max(1, math.isqrt(n))
+    rows = -(-n // length)
+    padded_M, padded_f = np.zeros((rows * length, size, size)), np.zeros((rows * length, size))
+    padded_M[:n], padded_f[:n] = M, f
+    # Position first: each step reads one block of memory.
+    M = np.ascontiguousarray(padded_M.reshape(rows, length, size, size).swapaxes(0, 1))
+    f = np.ascontiguousarray(padded_f.reshape(rows, length, size).swapaxes(0, 1))
+    for k in range(1, length):
+        f[k] += np.matmul(M[k], f[k - 1, :, :, None])[:, :, 0]
+        M[k] = M[k] @ M[k - 1]
+    start = np.zeros((rows, size))
+    for row in range(1, rows):
+        start[row] = M[-1, row - 1] @ start[row - 1] + f[-1, row - 1]
+    out = f + np.matmul(M, start[:, :, None])[:, :, :, 0]
+    return out.swapaxes(0, 1).reshape(rows * length, size)[:n]
 
 
 def free_response(shape: tuple[float, ...], s: FloatArray) -> list[FloatArray]:
@@ -92,11 +107,16 @@ def _moved(
         return (x[0] * np.exp(-s / tau) - (a - b * tau) * np.expm1(-s / tau) + b * s,)
     zeta = shape[1]
     z = s / tau
-    beta = np.sqrt(complex(zeta * zeta - 1.0))
-    slow = np.exp((beta - zeta) * z)
-    # sinh(beta z)/beta goes to z where beta vanishes.
-    wave = slow * -np.expm1(-2.0 * beta * z) / (2.0 * beta) if abs(beta) > 1e-8 else slow * z
-    S, C = wave.real, (slow * 0.5 * (1.0 + np.exp(-2.0 * beta * z))).real
+    beta = math.sqrt(abs(zeta * zeta - 1.0))
+    # sinh(beta z)/beta and sin(beta z)/beta go to z where beta vanishes.
+    if zeta < 1:
+        decay = np.exp(-zeta * z)
+        S = decay * np.sin(beta * z) / beta if beta > _FLAT else decay * z
+        C = decay * np.cos(beta * z)
+    else:
+        decay, fast = np.exp(-z / (zeta + beta)), np.expm1(-2.0 * beta * z)
+        S = decay * fast / (-2.0 * beta) if beta > _FLAT else decay * z
+        C = decay * (1.0 + 0.5 * fast)
     start = a - 2.0 * zeta * tau * b
     e, v = x[0] - start, x[1] - tau * b
     return start + b * s + (C + zeta * S) * e + S * v, tau * b + (C - zeta * S) * v - S * e

@@ -16,7 +16,7 @@ from looplab.engine.identification.record import Record
 from looplab.engine.identification.result import Fitted, Identified
 from looplab.engine.identification.step_data import Choices, step_data
 from looplab.engine.identification.tangent import tangent
-from looplab.engine.identification.two_point import SUNDARESAN_KRISHNASWAMY, two_points
+from looplab.engine.identification.two_points import SUNDARESAN_KRISHNASWAMY, two_points
 
 MethodName = Literal[
     "tangent",

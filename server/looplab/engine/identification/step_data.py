@@ -15,6 +15,11 @@ from looplab.engine.systems.polynomial import FloatArray
 _FLAT = 0.05
 _TAIL = 0.1
 _FEWEST = 5
+# Where the rise begins and by when it has been steepest, as parts of the change.
+_STARTED, _RISEN = 0.05, 0.632
+# Sample and neighbour pairs that are smoothed at once.
+_AT_ONCE = 200_000
+_HANKEL = np.add.outer(np.arange(3), np.arange(3))
 
 
 @dataclass(frozen=True)
@@ -95,6 +100,17 @@ class StepData:
         c, d = 3.0 * (y1 - y0) - 2.0 * m0 - m1, m0 + m1 - 2.0 * (y1 - y0)
         return y0 + x * (m0 + x * (c + x * d)), (m0 + x * (2.0 * c + 3.0 * x * d)) / h
 
+    def steepest(self) -> float:
+        """Where the curve rises fastest on its way to 63.2 %: neither its flat ends nor their noise count [time]."""
+        z = (self.y - self.y0) / (self.y_final - self.y0)
+        passed = np.flatnonzero(z >= _RISEN)
+        end = int(passed[0]) + 1 if passed.size else z.size
+        flat = np.flatnonzero(z[:end] <= _STARTED)
+        begin = float(self.t[flat[-1]]) - 0.5 * self.window if flat.size else float(self.t[0])
+        first = max(int(np.searchsorted(self.t, begin)) - _FEWEST // 2, 0)
+        way = float(np.sign(self.y_final - self.y0))
+        return float(self.t[first + int(np.argmax(way * self.dy[first:end]))])
+
     def crossing(self, fraction: float) -> float:
         """When the curve first passes a fraction of its way from y0 to y_final, after the step [time].
 
@@ -136,20 +152,28 @@ def noise_level(t: FloatArray, y: FloatArray) -> float:
 def smoothed(t: FloatArray, y: FloatArray, window: float) -> tuple[FloatArray, FloatArray]:
     """Local quadratic regression with tricube weights, over ``window`` [time] or five samples; value and slope."""
     n = t.size
+    low = np.searchsorted(t, t - 0.5 * window)
+    high = np.searchsorted(t, t + 0.5 * window, side="right")
+    few = high - low < _FEWEST
+    low[few] = np.clip(np.flatnonzero(few) - _FEWEST // 2, 0, max(n - _FEWEST, 0))
+    high[few] = np.minimum(low[few] + _FEWEST, n)
+    widest = int((high - low).max())
     value, slope = np.empty(n), np.empty(n)
-    for k in range(n):
-        low = int(np.searchsorted(t, t[k] - 0.5 * window))
-        high = int(np.searchsorted(t, t[k] + 0.5 * window, side="right"))
-        if high - low < _FEWEST:
-            low = max(0, min(k - _FEWEST // 2, n - _FEWEST))
-            high = min(n, low + _FEWEST)
-        s = t[low:high] - t[k]
-        reach = float(np.abs(s).max()) * 1.001
+    rows = max(1, _AT_ONCE // widest)
+    for start in range(0, n, rows):
+        here = slice(start, start + rows)
+        at = low[here, None] + np.arange(widest)
+        inside = at < high[here, None]
+        at = np.minimum(at, n - 1)
+        s = np.where(inside, t[at] - t[here, None], 0.0)
+        reach = 1.001 * np.abs(s).max(axis=1, keepdims=True)
         x = s / reach
-        w = np.sqrt((1.0 - np.abs(x) ** 3) ** 3)
-        columns = np.stack([w, w * x, w * x * x], axis=1)
-        c = np.linalg.lstsq(columns, w * y[low:high], rcond=None)[0]
-        value[k], slope[k] = c[0], c[1] / reach
+        w = inside * (1.0 - np.abs(x) ** 3) ** 3
+        powers = x[:, :, None] ** np.arange(5)
+        sums = np.einsum("ij,ijk->ik", w, powers)
+        right = np.einsum("ij,ijk->ik", w * y[at], powers[:, :, :3])
+        c = np.linalg.solve(sums[:, _HANKEL], right[:, :, None])[:, :, 0]
+        value[here], slope[here] = c[:, 0], c[:, 1] / reach[:, 0]
     return value, slope
 
 

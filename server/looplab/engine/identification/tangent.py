@@ -19,7 +19,7 @@ def tangent(data: StepData, choices: Choices | None = None, to_63: bool = False)
     Parameters
     ----------
     data : StepData
-        Smoothed; the inflection is the sample with the steepest slope, half a window off the ends.
+        Smoothed; the inflection is the sample with the steepest slope on the way to 63.2 %.
     choices : Choices or None
         A tangent drawn by hand: where it touches and its slope, each taken from the curve where left out.
     to_63 : bool
@@ -47,9 +47,7 @@ def tangent(data: StepData, choices: Choices | None = None, to_63: bool = False)
     way = float(np.sign(data.y_final - data.y0))
     t = choices.t_inflection
     if t is None:
-        # Within half a window of the ends the smoothing is one-sided, and its slope mostly noise.
-        sure = (data.t >= data.t[0] + 0.5 * data.window) & (data.t <= data.t[-1] - 0.5 * data.window)
-        t = float(data.t[int(np.argmax(np.where(sure | ~sure.any(), way * data.dy, -np.inf)))])
+        t = data.steepest()
     on_curve, slope_there = data.at(t)
     y = on_curve if choices.y_inflection is None else choices.y_inflection
     slope = slope_there if choices.slope is None else choices.slope

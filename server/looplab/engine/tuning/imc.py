@@ -52,7 +52,7 @@ def imc(model: FOPDT | SOPDT | IPDT, type: str, options: Options = DEFAULTS) -> 
     K, theta = model.K, model.theta
     if isinstance(model, IPDT):
         tau_c = closed_loop_time(options, PER_DEAD_TIME_INTEGRATING * theta, theta, "sqrt(10) theta")
-        gains = _integrating(model, type, tau_c)
+        gains = integrating_gains(model, type, tau_c)
     else:
         tau_c = closed_loop_time(options, max(PER_DEAD_TIME * theta, PER_LAG * model.tau), theta, "0.1 tau")
         if isinstance(model, SOPDT):
@@ -60,15 +60,22 @@ def imc(model: FOPDT | SOPDT | IPDT, type: str, options: Options = DEFAULTS) -> 
                 raise RuleNotApplicable(f"{RULE.name} is for a damped model, zeta > 0", field="zeta")
             lead = 2.0 * model.zeta * model.tau
             gains = Gains(lead / (K * (tau_c + theta)), lead, model.tau / (2.0 * model.zeta))
-        elif type == "PI":
-            gains = Gains(model.tau / (K * (tau_c + theta)), model.tau)
         else:
-            lead = model.tau + 0.5 * theta
-            gains = Gains(lead / (K * (tau_c + 0.5 * theta)), lead, model.tau * theta / (2.0 * model.tau + theta))
+            gains = first_order_gains(model, type, tau_c)
     return RULE.settings(model, type, gains, f"with tau_c = {tau_c:.4g}")
 
 
-def _integrating(model: IPDT, type: str, tau_c: float) -> Gains:
+def first_order_gains(model: FOPDT, type: str, tau_c: float) -> Gains:
+    """PI or PID that cancels the lag and leaves a loop with the time constant tau_c."""
+    K, tau, theta = model.K, model.tau, model.theta
+    if type == "PI":
+        return Gains(tau / (K * (tau_c + theta)), tau)
+    lead = tau + 0.5 * theta
+    return Gains(lead / (K * (tau_c + 0.5 * theta)), lead, tau * theta / (2.0 * tau + theta))
+
+
+def integrating_gains(model: IPDT, type: str, tau_c: float) -> Gains:
+    """PI or PID of an integrating process, with or without a lag."""
     K, theta = model.K, model.theta
     if model.tau and type == "PID":
         lead = 2.0 * tau_c + model.tau + theta
@@ -79,6 +86,12 @@ def _integrating(model: IPDT, type: str, tau_c: float) -> Gains:
     return Gains(lead / (K * (tau_c + 0.5 * theta) ** 2), lead, (tau_c * theta + 0.25 * theta**2) / lead)
 
 
+FIRST_ORDER_FORMULAS = {
+    "PI": r"K_c = \frac{\tau}{K(\tau_c + \theta)}, \quad \tau_I = \tau",
+    "PID": r"K_c = \frac{\tau + \theta/2}{K(\tau_c + \theta/2)}, \quad \tau_I = \tau + \theta/2, \quad "
+    r"\tau_D = \frac{\tau\theta}{2\tau + \theta}",
+}
+INTEGRATING_PI = r"K_c = \frac{2\tau_c + \theta}{K(\tau_c + \theta)^2}, \quad \tau_I = 2\tau_c + \theta"
 RULE = Rule(
     id="imc",
     name="IMC (internal model control)",
@@ -88,17 +101,13 @@ RULE = Rule(
     validity="any first- or second-order or integrating model; tau_c is the larger of 0.8 theta and 0.1 tau unless "
     "chosen (integrating: sqrt(10) theta)",
     formulas={
-        "FOPDT": {
-            "PI": r"K_c = \frac{\tau}{K(\tau_c + \theta)}, \quad \tau_I = \tau",
-            "PID": r"K_c = \frac{\tau + \theta/2}{K(\tau_c + \theta/2)}, \quad \tau_I = \tau + \theta/2, \quad "
-            r"\tau_D = \frac{\tau\theta}{2\tau + \theta}",
-        },
+        "FOPDT": FIRST_ORDER_FORMULAS,
         "SOPDT": {
             "PID": r"K_c = \frac{2\zeta\tau}{K(\tau_c + \theta)}, \quad \tau_I = 2\zeta\tau, \quad "
             r"\tau_D = \frac{\tau}{2\zeta}",
         },
         "IPDT": {
-            "PI": r"K_c = \frac{2\tau_c + \theta}{K(\tau_c + \theta)^2}, \quad \tau_I = 2\tau_c + \theta",
+            "PI": INTEGRATING_PI,
             "PID": r"K_c = \frac{2\tau_c + \theta}{K(\tau_c + \theta/2)^2}, \quad \tau_I = 2\tau_c + \theta, \quad "
             r"\tau_D = \frac{\tau_c\theta + \theta^2/4}{2\tau_c + \theta}",
         },

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from looplab.engine.systems.first_second_order import FOPDT
 from looplab.engine.systems.integrating import IPDT
-from looplab.engine.tuning.forms import Gains
+from looplab.engine.tuning.imc import FIRST_ORDER_FORMULAS, INTEGRATING_PI, first_order_gains, integrating_gains
 from looplab.engine.tuning.settings import DEFAULTS, Options, Rule, Settings, closed_loop_time
 
 # Three times the open-loop time constant is the robust choice, the time constant itself the aggressive one.
@@ -44,17 +44,12 @@ def lambda_tuning(model: FOPDT | IPDT, type: str, options: Options = DEFAULTS) -
     .. [2] K. J. Åström, T. Hägglund, Advanced PID Control, ISA 2006, ch. 6.
     """
     RULE.kind(model, type)
-    K, theta = model.K, model.theta
     if isinstance(model, IPDT):
-        tau_c = closed_loop_time(options, PER_DEAD_TIME * theta, theta, "3 theta")
-        gains = Gains((2.0 * tau_c + theta) / (K * (tau_c + theta) ** 2), 2.0 * tau_c + theta)
+        tau_c = closed_loop_time(options, PER_DEAD_TIME * model.theta, model.theta, "3 theta")
+        gains = integrating_gains(model, type, tau_c)
     else:
-        tau_c = closed_loop_time(options, PER_LAG * model.tau, theta, "3 tau")
-        if type == "PI":
-            gains = Gains(model.tau / (K * (tau_c + theta)), model.tau)
-        else:
-            lead = model.tau + 0.5 * theta
-            gains = Gains(lead / (K * (tau_c + 0.5 * theta)), lead, model.tau * theta / (2.0 * model.tau + theta))
+        tau_c = closed_loop_time(options, PER_LAG * model.tau, model.theta, "3 tau")
+        gains = first_order_gains(model, type, tau_c)
     return RULE.settings(model, type, gains, f"with lambda = {tau_c:.4g}")
 
 
@@ -65,15 +60,6 @@ RULE = Rule(
     source="E. B. Dahlin, Instruments and Control Systems 41(6) (1968) 77-83; "
     "K. J. Åström, T. Hägglund, Advanced PID Control, ISA 2006, ch. 6",
     validity="any first-order or integrating model; lambda (tau_c) is 3 tau unless chosen (integrating: 3 theta)",
-    formulas={
-        "FOPDT": {
-            "PI": r"K_c = \frac{\tau}{K(\tau_c + \theta)}, \quad \tau_I = \tau",
-            "PID": r"K_c = \frac{\tau + \theta/2}{K(\tau_c + \theta/2)}, \quad \tau_I = \tau + \theta/2, \quad "
-            r"\tau_D = \frac{\tau\theta}{2\tau + \theta}",
-        },
-        "IPDT": {
-            "PI": r"K_c = \frac{2\tau_c + \theta}{K(\tau_c + \theta)^2}, \quad \tau_I = 2\tau_c + \theta",
-        },
-    },
+    formulas={"FOPDT": FIRST_ORDER_FORMULAS, "IPDT": {"PI": INTEGRATING_PI}},
     apply=lambda_tuning,
 )

@@ -256,27 +256,32 @@ def steady_state(equations: SteadyEquations, root: Root, found_by: int = 1) -> S
 def steady_state_near(model: CompiledModel, u: Values, p: Values, near: Values) -> SteadyState:
     """The steady state that a start leads to.
 
+    Where the model's own initial state leads nowhere, as from rest where every derivative is zero, those of its
+    operating points are tried in turn.
+
     Raises
     ------
     InvalidInput
         The equations depend on t, or nothing comes to rest from there within the bounds.
     """
     require_autonomous(model)
-    box = search_box(model, [near, *known_states(model, u, p)])
+    known = known_states(model, u, p)
+    box = search_box(model, [near, *known])
     # A start is allowed outside the bounds of what is looked for.
     box = np.column_stack([np.minimum(box[:, 0], near), np.maximum(box[:, 1], near)])
-    equations = SteadyEquations(model, near, u, p, tuple(range(len(near))))
-    start = np.array(near)
-    root = solve(equations, start, box)
-    if root is None or not _inside(root.y, box):
-        root = settle(equations, start, box)
-    if root is None or not _inside(root.y, box):
-        raise InvalidInput(
-            "no steady state was found near this point",
-            field="near",
-            hint="try other states, inputs or parameters; some models have no steady state",
-        )
-    return steady_state(equations, _confirmed(equations, root, box) if root.null.size else root)
+    for begin in known if near == known[0] else [near]:
+        equations = SteadyEquations(model, begin, u, p, tuple(range(len(begin))))
+        start = np.array(begin)
+        root = solve(equations, start, box)
+        if root is None or not _inside(root.y, box):
+            root = settle(equations, start, box)
+        if root is not None and _inside(root.y, box):
+            return steady_state(equations, _confirmed(equations, root, box) if root.null.size else root)
+    raise InvalidInput(
+        "no steady state was found near this point",
+        field="near",
+        hint="try other states, inputs or parameters; some models have no steady state",
+    )
 
 
 def outputs_at(model: CompiledModel, state: SteadyState, u: Values, p: Values) -> dict[str, float | None]:
