@@ -84,9 +84,9 @@ def test_windows_and_breakpoints_agree(plant):
     process = library(plant)
     signs = np.sign(np.diagonal(process.gains()))
     loops = MultiLoop(process, (0, 1), (PID(0.4 * signs[0], 8.0, 1.0), PID(0.4 * signs[1], 9.0)), (True, True))
-    windows, pieces = Lattice.of(loops.system, 60.0), Steps(loops.system, 60.0)
+    windows, pieces = Lattice.of(loops.system, 25.0), Steps(loops.system, 25.0)
     assert windows is not None
-    t = np.linspace(0, 60, 307)
+    t = np.linspace(0, 25, 307)
     assert windows.outputs(t) == pytest.approx(pieces.outputs(t)[0], abs=1e-9)
 
 

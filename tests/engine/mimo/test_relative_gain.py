@@ -115,10 +115,10 @@ def test_the_least_condition_number_is_the_least():
     G = library("wood-berry").response(np.array([0.3]))[0]
     found = singular_values(G[None])
     assert found.minimized is not None
-    scale = np.geomspace(0.05, 20, 301)
-    numbers = [np.linalg.cond(np.diag([1, a]) @ G @ np.diag([1, b])) for a in scale for b in scale[::3]]
+    scale = np.geomspace(0.05, 20, 81)
+    numbers = [np.linalg.cond(np.diag([1, a]) @ G @ np.diag([1, b])) for a in scale for b in scale]
     assert found.minimized[0] <= min(numbers) * (1 + 1e-12)
-    assert found.minimized[0] == pytest.approx(min(numbers), rel=2e-3)
+    assert found.minimized[0] == pytest.approx(min(numbers), rel=5e-3)
     assert singular_values(np.eye(3)[None]).minimized is None
 
 

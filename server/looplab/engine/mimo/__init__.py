@@ -1,6 +1,6 @@
 """Several loops on one process: relative gains, pairing, decentralised PID loops, interaction and decouplers."""
 
-from looplab.engine.mimo.decoupling import Decoupler, Element, dynamic_decoupler, static_decoupler
+from looplab.engine.mimo.decoupling import Decoupler, Element, Prediction, dynamic_decoupler, static_decoupler
 from looplab.engine.mimo.interaction import Interaction, effective_process, interaction
 from looplab.engine.mimo.loops import MultiLoop
 from looplab.engine.mimo.pairing import NI_ASSUMES, Pairing, PairingStudy, niederlinski_index, study_pairings
@@ -22,6 +22,7 @@ __all__ = [
     "MultiLoopResponse",
     "Pairing",
     "PairingStudy",
+    "Prediction",
     "ProcessMatrix",
     "SingularValues",
     "blt",

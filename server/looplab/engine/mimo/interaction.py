@@ -31,7 +31,7 @@ class Interaction:
         lambda of the pair: own gain over effective gain where the others act perfectly at rest.
     own_margins, effective_margins : Margins or None
         Of the loop's open loop; ``closed_loop_stable`` is that of the whole.
-    others : Verdict
+    others : Verdict or None
         Whether the other loops are stable while this one is in manual.
     reasons : dict of str
     """
@@ -44,7 +44,7 @@ class Interaction:
     relative_gain: float | None
     own_margins: Margins | None
     effective_margins: Margins | None
-    others: Verdict
+    others: Verdict | None
     reasons: dict[str, str]
 
 
@@ -135,6 +135,11 @@ def interaction(loops: MultiLoop, loop: int, omega: FloatArray) -> Interaction:
         relative = float(rga_at_rest(loops.process)[loop, loops.pairing[loop]])
     except EngineError as error:
         reasons["relative_gain"] = error.message
+    others = None
+    try:
+        others = delay_verdict(seen)
+    except EngineError as error:
+        reasons["others"] = error.message
     s = 1j * omega
     return Interaction(
         omega,
@@ -145,6 +150,6 @@ def interaction(loops: MultiLoop, loop: int, omega: FloatArray) -> Interaction:
         relative,
         own_margins,
         effective_margins,
-        delay_verdict(seen),
+        others,
         reasons,
     )
