@@ -22,6 +22,7 @@ PAGES = {
     "/labs/{lab_id}": "lab.html",
     "/plants": "plants.html",
     "/plants/{plant_id}": "plant.html",
+    "/mimo": "mimo.html",
     "/api": "api.html",
 }
 

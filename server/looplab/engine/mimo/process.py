@@ -112,10 +112,12 @@ class ProcessMatrix:
         return float(f"{longest:.1e}") if longest > 0 else 10.0
 
     def frequency_range(self) -> tuple[float, float]:
-        """Where what happens can be seen: a decade around the corners of all entries [rad/time]."""
+        """Where what happens can be seen: around all corners, and not far into the dead times [rad/time]."""
         marks = [abs(root) for row in self.entries for entry in row for root in (*entry.zeros, *entry.poles) if root]
-        marks += [1.0 / entry.theta for row in self.entries for entry in row if entry.theta]
-        return (0.1 * min(marks), 10.0 * max(marks)) if marks else (0.01, 100.0)
+        late = [2.0 / entry.theta for row in self.entries for entry in row if entry.theta]
+        if not marks:
+            return (0.01 * min(late), max(late)) if late else (0.01, 100.0)
+        return 0.1 * min(marks), max([10.0 * max(marks), *late])
 
 
 def _path(entry: TransferFunction) -> DelaySystem:
