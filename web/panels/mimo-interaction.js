@@ -43,12 +43,16 @@ export function mount(host, store, api) {
     const { own_gain: own, effective_gain: seen, relative_gain: relative, own_margins: before, effective_margins: after, others, reasons } = analysis?.answer ?? {};
     const loop = store.get().seen + 1;
     const row = (/** @type {string} */ name, /** @type {any} */ a, /** @type {any} */ b, unit = "") => [name, formatNumber(a), formatNumber(b), unit];
-    const lost = before && after && before.PM_deg !== null && after.PM_deg !== null ? after.PM_deg - before.PM_deg : null;
-    const told = others && !others.stable ? `The other loops alone are ${others.verdict}: with them closed, loop ${loop} is what is left to hold the process.` : seen !== null && own ? `Closing the others changes the gain that loop ${loop} sees from ${formatNumber(own)} to ${formatNumber(seen)}${relative === null ? "" : `, which is its own gain over λ = ${formatNumber(relative)}`}${lost === null ? "" : `, and ${lost < 0 ? "takes" : "adds"} ${formatNumber(Math.abs(lost), 2)}° ${lost < 0 ? "from" : "to"} its phase margin`}.` : sentence(reasons?.effective_gain);
+    const lost = before && after && before.PM_deg !== null && after.PM_deg !== null ? Math.round(after.PM_deg - before.PM_deg) : null;
+    const margin = lost === null ? "" : lost === 0 ? ", and leaves its phase margin as it is" : `, and ${lost < 0 ? "takes" : "adds"} ${Math.abs(lost)}° ${lost < 0 ? "from" : "to"} its phase margin`;
+    // With a decoupler the loop's own process is no longer its entry.
+    const why = relative === null || store.get().decoupler !== "none" ? "" : `, its own over λ = ${formatNumber(relative)}`;
+    const unsafe = others && !others.stable;
+    const told = unsafe ? `The other loops alone are ${others.verdict}: with them closed, loop ${loop} is what is left to hold the process.` : seen !== null && own ? `Closing the others changes the gain that loop ${loop} sees from ${formatNumber(own)} to ${formatNumber(seen)}${why}${margin}.` : sentence(reasons?.effective_gain);
     words.replaceChildren(
       h("p", { class: "finding" }, told),
       valueTable(
-        `Loop ${loop}`,
+        `Loop ${loop}, with the others open and closed`,
         ["", "others open", "others closed", ""],
         [
           ["stable", yesNo(before ? before.closed_loop_stable : null), yesNo(after ? after.closed_loop_stable : null), ""],

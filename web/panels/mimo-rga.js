@@ -55,7 +55,7 @@ export function mount(host, store, api, { onAnswer }) {
     };
     const head = h("tr", {}, h("td"), ...inputs.map((/** @type {any} */ { name, meaning: what }) => h("th", { scope: "col", title: what }, name)));
     const rows = rga.map((/** @type {number[]} */ row, /** @type {number} */ i) => h("tr", {}, h("th", { scope: "row", title: outputs[i].meaning }, outputs[i].name), ...row.map((value, j) => cell(value, pairing[i] === j))));
-    matrix.replaceChildren(h("div", { class: "table-scroll", tabindex: 0, role: "region", "aria-label": "Relative gains at rest" }, h("table", { class: "mimo-matrix" }, h("caption", {}, "Relative gains at rest; outlined: paired now"), h("thead", {}, head), h("tbody", {}, ...rows))));
+    matrix.replaceChildren(h("div", { class: "table-scroll", tabindex: 0, role: "region", "aria-label": "Relative gains at rest" }, h("table", { class: "mimo-matrix" }, h("caption", {}, "λ at rest; paired: outlined"), h("thead", {}, head), h("tbody", {}, ...rows))));
   }
 
   function render() {
