@@ -51,6 +51,8 @@ def test_a_setpoint_step_of_both_loops(post: Any) -> None:
     found = ask(post, "simulate", body, SeveralResponses)
     assert found.verdict.verdict == "stable"
     assert [y[-1] for y in found.y] == pytest.approx([1, 0], abs=2e-3)
+    brief = ask(post, "simulate", {**body, "verdict": False}, SeveralResponses)
+    assert brief.y == found.y and brief.verdict is None and brief.reasons["verdict"] == "not asked for"
     crossed = {**body, "pairing": [2, 1]}
     found = ask(post, "simulate", crossed, SeveralResponses)
     assert found.verdict.verdict == "unstable"

@@ -68,7 +68,8 @@ export function mount(host, store, api) {
   function curves() {
     const answer = analysis?.answer;
     if (view === "response") {
-      const [a, b] = [answer.own_response, answer.effective_response];
+      const nothing = { t: [], y: [] };
+      const [a, b] = [answer.own_response ?? nothing, answer.effective_response ?? nothing];
       const x = a.t.length >= b.t.length ? a.t : b.t;
       return { x, curves: [{ name: "others open", signal: "case_1", values: a.y }, { name: "others closed", signal: "y", values: b.y }], yTitle: `y${store.get().seen + 1}`, xTitle: `t [${answer.time_unit}]`, log: false, unit: answer.time_unit, show: /** @type {[number, number]} */ ([0, 1.2]) };
     }

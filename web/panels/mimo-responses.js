@@ -35,6 +35,7 @@ export function mount(host, store, api, { onError }) {
   let drawnFor = "";
   let asked = "";
   let drawnWide = false;
+  let stable = true;
   const verdict = h("p", { class: "mimo-verdict", role: "status" });
   const place = h("div", { class: "mimo-form" });
   const frame = createPanelFrame(host, {
@@ -96,7 +97,7 @@ export function mount(host, store, api, { onError }) {
   const transport = createTransport({
     send: (/** @type {{state: MimoState, moving: boolean}} */ { state, moving }) => {
       const { kind, loop, size: amplitude } = testOf(state);
-      return api.analyse("mimo/simulate", { ...loopsRequest(state), changes: [{ kind, loop: loop + 1, size: amplitude }], points: moving ? POINTS.moving : POINTS.rest, arrays: "f4" });
+      return api.analyse("mimo/simulate", { ...loopsRequest(state), changes: [{ kind, loop: loop + 1, size: amplitude }], points: moving ? POINTS.moving : POINTS.rest, verdict: !moving, arrays: "f4" });
     },
     onAnswer(/** @type {Answer} */ answer, { state, moving }) {
       found = { answer, state };
@@ -127,16 +128,19 @@ export function mount(host, store, api, { onError }) {
     const rows = state.loops.map((loop, i) => ({ name: names("outputs")[i] ?? "", unit: unitOf("outputs", i), values: answer.y[i] ?? [], setpoint: loop.mode === "auto" ? (test.kind === "setpoint" && test.loop === i ? test.size : 0) : null }));
     const inputs = state.loops.map((_, j) => ({ name: names("inputs")[j] ?? "", unit: unitOf("inputs", j), values: answer.u[j] ?? [], setpoint: null }));
     frame.root.style.setProperty("--rows", String(drawnWide ? rows.length : 2 * rows.length));
-    const figure = mimoResponsesPlot({ t: answer.t, outputs: rows, inputs, horizon: answer.horizon, timeUnit: answer.time_unit, stable: answer.verdict?.stable ?? false, size: test.size, wide: drawnWide }, theme, { ranges, moving });
+    const figure = mimoResponsesPlot({ t: answer.t, outputs: rows, inputs, horizon: answer.horizon, timeUnit: answer.time_unit, stable: answer.truncated_reason === null && (answer.verdict?.stable ?? stable), size: test.size, wide: drawnWide }, theme, { ranges, moving });
     ranges = figure.ranges;
     frame.show(figure, moving);
+    verdict.classList.toggle("moving", moving);
+    // What was asked for while a knob moved came without one; the next answer brings it.
+    if (moving || answer.reasons["verdict"] === "not asked for") return;
     const told = answer.verdict?.verdict ?? "marginal";
+    stable = answer.verdict?.stable ?? false;
     const words = answer.verdict ? `${told}: ${answer.verdict.because}` : sentence(answer.reasons["verdict"]);
     if (verdict.dataset["told"] !== words) {
       Object.assign(verdict.dataset, { told: words, verdict: told });
       verdict.replaceChildren(icon(told), h("strong", {}, sentence(told).replace(".", "")), h("span", {}, answer.verdict ? sentence(answer.verdict.because) : words));
     }
-    if (moving) return;
     const ends = rows.map(({ name, unit, values }) => `${name} ${formatWithUnit(values[values.length - 1] ?? 0, unit)}`);
     frame.note(answer.truncated_reason ? sentence(answer.truncated_reason) : "");
     frame.tell(`Responses to a ${test.kind} step of ${formatWithUnit(test.size, "")} in loop ${test.loop + 1}. At the end: ${ends.join(", ")}. The loops are ${told}.`, [

@@ -34,6 +34,7 @@ export function mount(host, store, api, { onAnswer }) {
     { value: "rga", label: "relative gains" },
     { value: "sigma", label: "singular values" },
     { value: "gamma", label: "condition number" },
+    { value: "number", label: "RGA number" },
   ];
   chosen.value = view;
   const matrix = h("div", { class: "mimo-rga" });
@@ -92,6 +93,7 @@ export function mount(host, store, api, { onAnswer }) {
       const least = frequency.minimized_condition_number;
       return { curves: [...(frequency.condition_number ? [{ name: "condition number", signal: "case_1", values: frequency.condition_number }] : []), ...(least ? [{ name: "least over all units", signal: "case_2", values: least }] : [])], yTitle: "σ largest / smallest", logY: true };
     }
+    if (view === "number") return { curves: frequency.rga_number ? [{ name: "RGA number of the pairing", signal: "case_1", values: frequency.rga_number }] : [], yTitle: "Σ |Λ − pairs|", logY: false };
     const { pairing } = store.get();
     const paired = (frequency.rga ?? []).map((/** @type {any[]} */ row, /** @type {number} */ i) => ({ name: `|λ${i + 1}${(pairing[i] ?? i) + 1}|`, signal: PAIRS[i] ?? "P", values: magnitude(row[pairing[i] ?? i]) }));
     // Two loops have the same relative gain on both pairs.

@@ -118,8 +118,8 @@ class InteractionAnswer(Answer):
     effective_margins: MarginsAnswer | None
     others: Annotated[SystemVerdict | None, Field(description="The other loops alone, this one in manual.")]
     horizon: float
-    own_response: LoopResponse
-    effective_response: LoopResponse
+    own_response: LoopResponse | None
+    effective_response: LoopResponse | None
     reasons: Reasons
 
 

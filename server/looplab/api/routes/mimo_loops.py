@@ -42,6 +42,7 @@ class SimulateSeveralRequest(SeveralLoops):
     changes: Annotated[list[ChangeShape], Field(min_length=1, max_length=10)]
     horizon: Horizon | None = None
     points: Points = 500
+    verdict: Annotated[bool, Field(description="false: without it, which takes longer than the responses.")] = True
     arrays: Literal["list", "f4"] = "list"
 
 
@@ -88,10 +89,13 @@ def simulate(request: Annotated[SimulateSeveralRequest, Body(openapi_examples=SI
     found = simulate_loops(loops, changes, horizon, request.points)
     reasons: dict[str, str] = {}
     verdict = None
-    try:
-        verdict = _verdict(loops.verdict)
-    except EngineError as error:
-        reasons["verdict"] = error.message
+    if request.verdict:
+        try:
+            verdict = _verdict(loops.verdict)
+        except EngineError as error:
+            reasons["verdict"] = error.message
+    else:
+        reasons["verdict"] = "not asked for"
     n = loops.process.size
     answer = {
         "time_unit": request.plant.units()[0],
@@ -172,8 +176,13 @@ def interaction_of(request: Annotated[InteractionRequest, Body(openapi_examples=
         "effective_margins": found.effective_margins and asdict(found.effective_margins),
         "others": found.others and _verdict(found.others),
         "horizon": horizon,
-        "own_response": _response(alone, loop, horizon, request.points),
-        "effective_response": _response(closed, loop, horizon, request.points),
+        "own_response": None,
+        "effective_response": None,
         "reasons": found.reasons,
     }
+    for name, which in (("own_response", alone), ("effective_response", closed)):
+        try:
+            answer[name] = _response(which, loop, horizon, request.points)
+        except EngineError as error:
+            found.reasons[name] = error.message
     return json_response(answer, request.arrays)
