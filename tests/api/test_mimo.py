@@ -75,6 +75,8 @@ def test_decoupler_and_settings(post: Any) -> None:
     assert not found.exact and ask(post, "decoupler", {"plant": COLUMN, "prediction": "wait"}, DecouplerAnswer).exact
     tuned = ask(post, "tune", {"plant": WOOD_BERRY}, SeveralSettings)
     assert tuned.settings[0].controller.Kc == pytest.approx(0.375, abs=5e-4)
+    crossed = ask(post, "tune", {"plant": WOOD_BERRY, "pairing": [2, 1]}, SeveralSettings)
+    assert all(each.controller is None and "pairing" in each.reason for each in crossed.settings)
     each = ask(post, "tune", {"plant": WOOD_BERRY, "method": "simc"}, SeveralSettings)
     assert each.settings[1].controller.Kc < 0 and each.factor is None
 
@@ -100,7 +102,6 @@ def test_decoupler_and_settings(post: Any) -> None:
         ("simulate", {"loops": [{"controller": {"type": "pid", "Kc": 1, "tau_I": 0}}, PI[1]]}, None),
         ("interaction", {"loop": 3}, "loop"),
         ("decoupler", {"plant": {"type": "plant", "id": "ogunnaike-ray"}}, "decoupler"),
-        ("tune", {"pairing": [2, 1]}, "pairing"),
         ("tune", {"method": "magic"}, "method"),
     ],
 )

@@ -6,6 +6,7 @@ import { fromMimoQuery, toMimoQuery } from "../core/mimo-url.js";
 import { h } from "../components/dom.js";
 import { icon } from "../components/icons.js";
 import "../components/site-header.js";
+import { bindUndoKeys } from "../components/undo-keys.js";
 import * as decoupler from "../panels/mimo-decoupler.js";
 import * as diagram from "../panels/mimo-diagram.js";
 import * as interaction from "../panels/mimo-interaction.js";
@@ -26,12 +27,9 @@ const api = createApi();
 /** Settings to begin with: all loops together where that can be, else each for its own entry. @param {MimoState} state @param {number} horizon */
 async function tuned(state, horizon) {
   for (const method of TUNE_BY) {
-    try {
-      const { settings } = await api.analyse("mimo/tune", { ...pairedRequest(state), method, ...(method === "simc" ? { tau_c: horizon * BRISK } : {}) });
-      return state.loops.map((loop, i) => (settings[i]?.controller ? tunedLoop(loop, settings[i].controller) : loop));
-    } catch {
-      // A rule that does not apply: the next one may.
-    }
+    const { settings } = await api.analyse("mimo/tune", { ...pairedRequest(state), method, ...(method === "simc" ? { tau_c: horizon * BRISK } : {}) });
+    // A rule that does not apply to any loop: the next one may.
+    if (settings.some((/** @type {any} */ each) => each.controller)) return state.loops.map((loop, i) => (settings[i]?.controller ? tunedLoop(loop, settings[i].controller) : loop));
   }
   return state.loops;
 }
@@ -85,8 +83,8 @@ function build(main, initial, matrices) {
   const rail = h("div", { class: "mimo-rail" });
   const stage = h("div", { class: "mimo-stage" });
   const analyses = h("div", { class: "mimo-analyses" });
-  const button = (/** @type {string} */ picture, /** @type {string} */ label, /** @type {() => void} */ run) => h("button", { type: "button", class: "icon-button", "aria-label": label, title: label, onclick: run }, icon(picture));
-  const [undo, redo] = [button("undo", "Undo", () => store.undo()), button("redo", "Redo", () => store.redo())];
+  const button = (/** @type {string} */ picture, /** @type {string} */ label, /** @type {string} */ title, /** @type {() => void} */ run) => h("button", { type: "button", class: "icon-button", "aria-label": label, title, onclick: run }, icon(picture));
+  const [undo, redo] = [button("undo", "Undo", "Undo (Ctrl+Z)", () => store.undo()), button("redo", "Redo", "Redo (Ctrl+Shift+Z)", () => store.redo())];
   main.querySelector(".mimo-head")?.append(h("div", { class: "mimo-history", role: "group", "aria-label": "History" }, undo, redo));
   main.append(h("div", { class: "mimo-bench" }, rail, stage, analyses));
 
@@ -133,6 +131,7 @@ function build(main, initial, matrices) {
     if (!moving) remember();
   });
   remember();
+  bindUndoKeys(store);
   main.addEventListener("panel-expand", (event) => /** @type {HTMLElement} */ (event.target).classList.toggle("enlarged"));
 }
 

@@ -13,6 +13,9 @@ import "../components/segmented-control.js";
 import { createFigure } from "../plots/figure.js";
 import { curvesPlot } from "../plots/mimo_frequency.js";
 
+/** Of a unit step: what runs away leaves the picture there. */
+const [LOWEST, HIGHEST] = [-3, 4];
+
 /** @param {HTMLElement} host @param {MimoStore} store @param {Api} api */
 export function mount(host, store, api) {
   let view = "response";
@@ -92,8 +95,7 @@ export function mount(host, store, api) {
       draw(theme, held) {
         if (!analysis?.answer) return null;
         const shown = curves();
-        // What runs away leaves the picture.
-        const calm = view === "response" ? shown.curves.map((curve) => ({ ...curve, values: Array.from(curve.values, (/** @type {number} */ value) => Math.max(-3, Math.min(4, value))) })) : shown.curves;
+        const calm = view === "response" ? shown.curves.map((curve) => ({ ...curve, values: Array.from(curve.values, (/** @type {number} */ value) => (value < LOWEST || value > HIGHEST ? NaN : value)) })) : shown.curves;
         return curvesPlot({ ...shown, curves: calm }, theme, held);
       },
       table() {

@@ -47,8 +47,11 @@ export function mount(host, store, api) {
       if (asked !== JSON.stringify(pairedRequest(store.get()))) return;
       const loops = store.get().loops.map((loop, i) => (settings[i]?.controller ? tunedLoop(loop, settings[i].controller) : loop));
       store.set({ loops });
-      const refused = settings.map((/** @type {any} */ each, /** @type {number} */ i) => (each.reason ? `Loop ${i + 1} stays as it was: ${sentence(each.reason)}` : "")).filter(Boolean);
-      setText(status, refused.length > 0 ? refused.join(" ") : factor ? `Tuned by ${label}: detuned by a factor of ${formatNumber(factor)}.` : `Tuned by ${label}, each loop as if it were alone.`);
+      /** @type {string[]} */
+      const reasons = settings.map((/** @type {any} */ each) => each.reason ?? "");
+      const same = reasons[0] && reasons.every((reason) => reason === reasons[0]);
+      const refused = same ? `${label} does not apply: ${sentence(reasons[0])}` : reasons.map((reason, i) => (reason ? `Loop ${i + 1} stays as it was: ${sentence(reason)}` : "")).filter(Boolean).join(" ");
+      setText(status, refused ? refused : factor ? `Tuned by ${label}: detuned by a factor of ${formatNumber(factor)}.` : `Tuned by ${label}, each loop as if it were alone.`);
     } catch (error) {
       const { message, hint } = /** @type {any} */ (error);
       setText(status, [message, hint].map(sentence).filter(Boolean).join(" "));

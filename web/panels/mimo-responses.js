@@ -52,7 +52,8 @@ export function mount(host, store, api, { onError }) {
   });
   frame.root.classList.add("mimo-panel");
   const body = /** @type {HTMLElement} */ (frame.root.querySelector(".panel-body"));
-  const wide = () => body.clientWidth >= WIDE;
+  // Without a width, while it is being laid out, it stays as it is.
+  const wide = () => (body.clientWidth === 0 ? drawnWide : body.clientWidth >= WIDE);
 
   /** @param {"outputs" | "inputs"} kind */
   function names(kind) {

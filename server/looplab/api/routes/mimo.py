@@ -14,7 +14,7 @@ from looplab.api.docs import ERRORS
 from looplab.api.encode import json_response
 from looplab.api.strict import StrictRoute
 from looplab.api.tuning_request import RuleOptions
-from looplab.engine.errors import EngineError, InvalidInput
+from looplab.engine.errors import EngineError, InvalidInput, RuleNotApplicable
 from looplab.engine.loop import PID
 from looplab.engine.mimo import (
     NI_ASSUMES,
@@ -256,7 +256,11 @@ def tune(request: Annotated[TuneSeveralRequest, Body(openapi_examples=TUNE_EXAMP
     paired = process.paired(request.order(process))
     answer: dict[str, Any] = {"method": request.method, "factor": None, "log_modulus_dB": None, "omega": None}
     if request.method == "blt":
-        found = blt(paired)
+        try:
+            found = blt(paired)
+        except RuleNotApplicable as error:
+            refused = [{"controller": None, "reason": error.message}] * paired.size
+            return json_response(answer | {"settings": refused, "source": BLT_SOURCE})
         settings: list[dict[str, Any]] = [{"controller": _pid(each), "reason": None} for each in found.controllers]
         answer |= {name: getattr(found, name) for name in ("factor", "log_modulus_dB", "omega")}
         return json_response(answer | {"settings": settings, "source": BLT_SOURCE})
