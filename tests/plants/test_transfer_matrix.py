@@ -24,7 +24,11 @@ def last_step(t):
 
 
 def test_the_list():
-    assert transfer_matrix_ids() == ["ethanol-water"]
+    assert transfer_matrix_ids() == [
+        *("ethanol-water", "ogunnaike-ray", "quadruple-tank", "quadruple-tank-crossed"),
+        *("vinante-luyben", "wardle-wood", "wood-berry"),
+    ]
+    assert all(group_of(name) in {"Columns", "Tanks"} for name in transfer_matrix_ids())
     assert not set(transfer_matrix_ids()) & set(plant_ids())
     assert group_of("ethanol-water") == "Columns"
     document = transfer_matrix_document("ethanol-water")

@@ -8,6 +8,7 @@ import { hasDerivative, hasIntegral } from "../core/loop.js";
 import { h } from "../components/dom.js";
 import { icon } from "../components/icons.js";
 import { toast } from "../components/status-toast.js";
+import { bindUndoKeys } from "../components/undo-keys.js";
 
 const MOST_KEPT = 4;
 
@@ -49,21 +50,7 @@ export function mount(host, store, _api, { link: linked = true } = {}) {
     }
   }
 
-  /** @param {KeyboardEvent} event */
-  function key(event) {
-    if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
-    const pressed = event.key.toLowerCase();
-    const back = pressed === "z" && !event.shiftKey;
-    const forth = pressed === "y" || (pressed === "z" && event.shiftKey);
-    if (!back && !forth) return;
-    // Text being typed has an undo of its own.
-    const target = event.target;
-    if (target instanceof HTMLInputElement && target.type === "text") return;
-    event.preventDefault();
-    if (back) store.undo();
-    else store.redo();
-  }
-  addEventListener("keydown", key);
+  const unbind = bindUndoKeys(store);
 
   function show() {
     undo.disabled = !store.canUndo;
@@ -85,7 +72,7 @@ export function mount(host, store, _api, { link: linked = true } = {}) {
   const stop = store.subscribe(show);
   show();
   return () => {
-    removeEventListener("keydown", key);
+    unbind();
     stop();
     root.remove();
   };

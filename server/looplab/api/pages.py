@@ -23,6 +23,7 @@ PAGES = {
     "/plants": "plants.html",
     "/plants/{plant_id}": "plant.html",
     "/experiments": "experiments.html",
+    "/mimo": "mimo.html",
     "/api": "api.html",
 }
 

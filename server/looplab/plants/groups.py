@@ -10,10 +10,13 @@ GROUPS: dict[str, tuple[str, ...]] = {
     ),
     "Tanks": (
         *("gravity-drained-tank", "two-tanks", "two-tanks-interacting", "tanks-in-series"),
-        *("level-loop",),
+        *("level-loop", "quadruple-tank", "quadruple-tank-crossed"),
     ),
     "Reactors": ("cstr", "cstr-variable-volume", "jacketed-cstr"),
-    "Columns": ("distillation", "ethanol-water"),
+    "Columns": (
+        *("distillation", "ethanol-water", "ogunnaike-ray"),
+        *("wood-berry", "vinante-luyben", "wardle-wood"),
+    ),
     "Mechanical": ("cart-pendulum", "cruise-control"),
     "Instruments": ("orifice", "rtd", "dp-cell", "control-valve", "pump-valve", "pressure-regulator"),
 }

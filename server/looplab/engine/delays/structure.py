@@ -59,6 +59,39 @@ def in_loops(system: DelaySystem) -> Flags:
     return np.diagonal(reach)[system.order :].copy()
 
 
+def pruned(system: DelaySystem) -> DelaySystem:
+    """The system without states and delays that no input reaches or no output shows, the rest as it was.
+
+    Only what the zeros of the matrices tell: unlike a minimal form it rounds nothing.
+    """
+    n = system.order
+    reach = reachable(system)
+    reach[np.diag_indices(n + system.tau.size)] = True
+    driven = np.vstack([system.B1, system.D21]).any(axis=1)
+    shown = np.hstack([system.C1, system.D12]).any(axis=0)
+    alive = np.logical_and(reach[:, driven].any(axis=1), reach[shown].any(axis=0))
+    states, delays = np.flatnonzero(alive[:n]), np.flatnonzero(alive[n:])
+    rows = np.append(np.arange(system.outputs), system.outputs + delays)
+    columns = np.append(np.arange(system.inputs), system.inputs + delays)
+    return DelaySystem(
+        system.A[np.ix_(states, states)],
+        system.B[np.ix_(states, columns)],
+        system.C[np.ix_(rows, states)],
+        system.D[np.ix_(rows, columns)],
+        system.tau[delays],
+    )
+
+
+def channel(system: DelaySystem, inputs: list[int], outputs: list[int]) -> DelaySystem:
+    """Some inputs and outputs of a system, without what they do not reach or show."""
+    k = system.tau.size
+    columns = [*inputs, *range(system.inputs, system.inputs + k)]
+    rows = [*outputs, *range(system.outputs, system.outputs + k)]
+    return pruned(
+        DelaySystem(system.A, system.B[:, columns], system.C[rows], system.D[np.ix_(rows, columns)], system.tau)
+    )
+
+
 def echo(system: DelaySystem) -> tuple[float, float]:
     r"""How much of a jump comes back through delays alone: a bound below and a bound above.
 
