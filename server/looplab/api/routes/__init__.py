@@ -20,6 +20,7 @@ from looplab.api.routes import (
     root_locus,
     routh,
     stability,
+    state_feedback,
     state_space,
     tune,
 )
@@ -43,6 +44,7 @@ ROUTERS = tuple(
         stability,
         response,
         state_space,
+        state_feedback,
         plants,
         plant_steady_states,
         models,
