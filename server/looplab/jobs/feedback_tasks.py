@@ -62,14 +62,17 @@ class FeedbackProblem:
 
 @dataclass(frozen=True)
 class FeedbackRunSettings:
-    """What a run begins with: states and setpoints by name, limits by input, a push of one input."""
+    """What a run is made with: states and setpoints by name, limits by input, and pushes.
+
+    A push is the input's name (None: the first), size, start and duration.
+    """
 
     horizon: float
     points: int
     initial: Mapping[str, float]
     setpoints: Mapping[str, float]
     limits: Mapping[str, tuple[float, float]]
-    push: tuple[str | None, float, float, float] | None
+    pushes: tuple[tuple[str | None, float, float, float], ...]
 
 
 @dataclass(frozen=True)
@@ -223,14 +226,14 @@ def _has_gain(found: StateFeedback) -> bool:
     return bool(settings.controlled) and not settings.integral and found.N_reason is None
 
 
-def _push(run: FeedbackRunSettings, inputs: list[_Signal]) -> Push | None:
-    if run.push is None:
-        return None
-    name, size, start, duration = run.push
+def _pushes(run: FeedbackRunSettings, inputs: list[_Signal]) -> list[Push]:
     names = [each.name for each in inputs]
-    sizes = np.zeros(len(names))
-    sizes[0 if name is None else _index(name, names, "push.input")] = size
-    return Push(sizes, start, duration)
+    found = []
+    for index, (name, size, start, duration) in enumerate(run.pushes):
+        sizes = np.zeros(len(names))
+        sizes[0 if name is None else _index(name, names, f"pushes[{index}].input")] = size
+        found.append(Push(sizes, start, duration))
+    return found
 
 
 def _setpoints(run: FeedbackRunSettings, ready: _Prepared) -> FloatArray | None:
@@ -246,7 +249,7 @@ def simulate_feedback(problem: FeedbackProblem, run: FeedbackRunSettings) -> dic
     """The linear response, and the nonlinear run where the plant is nonlinear, as the API answers it."""
     ready = _prepare(problem)
     loop = ready.loop(run.limits)
-    push, r = _push(run, ready.inputs), _setpoints(run, ready)
+    pushes, r = _pushes(run, ready.inputs), _setpoints(run, ready)
     t = np.linspace(0.0, run.horizon, run.points)
     names = [each.name for each in ready.states]
     for name in run.initial:
@@ -258,10 +261,10 @@ def simulate_feedback(problem: FeedbackProblem, run: FeedbackRunSettings) -> dic
 
         assert isinstance(problem.plant, NonlinearSource)
         with located_in(problem.plant.source, NonFinite):
-            nonlinear = _nonlinear_answer(ready, run_feedback(loop, t, run.initial, r, push))
+            nonlinear = _nonlinear_answer(ready, run_feedback(loop, t, run.initial, r, pushes))
     linear, reason = None, None
     try:
-        found = linear_run(linear_loop(ready.found), t, x0, r, push)
+        found = linear_run(linear_loop(ready.found), t, x0, r, pushes)
         linear = {
             "t": found.t,
             "states": _by_name(ready.states, found.x),

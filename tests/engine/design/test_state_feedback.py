@@ -179,10 +179,12 @@ def test_a_run_with_observer_integrator_setpoint_and_push_solves_its_equations()
         states.append(part.y[:, : inside.size])
         z = part.y[:, -1]
     expected = np.hstack(states).T
-    run = linear_run(linear_loop(found), t, np.array([0.5, -0.2]), np.array([0.7]), Push(np.array([2.0]), 1.05, 1.45))
+    run = linear_run(linear_loop(found), t, np.array([0.5, -0.2]), np.array([0.7]), [Push(np.array([2.0]), 1.05, 1.45)])
     assert run.x == pytest.approx(expected[:, :2], abs=1e-10)
     assert run.estimate == pytest.approx(expected[:, 3:], abs=1e-10)
-    late = linear_run(linear_loop(found), np.array([0.0, 60.0]), np.zeros(2), np.array([0.7]), Push(np.ones(1), 1, 99))
+    late = linear_run(
+        linear_loop(found), np.array([0.0, 60.0]), np.zeros(2), np.array([0.7]), [Push(np.ones(1), 1, 99)]
+    )
     # the integrator leaves no error behind a load that stays
     assert late.y[-1, 0] == pytest.approx(0.7, abs=1e-9)
 

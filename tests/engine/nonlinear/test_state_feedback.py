@@ -74,7 +74,7 @@ def test_it_is_caught_from_fifteen_degrees(observer):
         parts.append(found.y[:, : inside.size])
         z = found.y[:, -1]
     expected = np.hstack(parts).T
-    run = run_feedback(under, t, {"phi": tilt}, push=Push(np.array([3.0]), 2.0, 0.1), rtol=1e-11)
+    run = run_feedback(under, t, {"phi": tilt}, pushes=[Push(np.array([3.0]), 2.0, 0.1)], rtol=1e-11)
     assert run.outcome == "caught"
     assert np.abs(run.u).max() < 20
     assert run.x == pytest.approx(expected[:, :4], abs=1e-8)
@@ -106,7 +106,7 @@ def test_the_limits_cut_the_force_and_the_linear_prediction_is_near_for_small_ti
 
 def test_integrators_hold_the_cart_against_a_push_that_stays():
     t = np.linspace(0, 15, 151)
-    push = Push(np.array([1.0]), 1.0, 100.0)
+    push = [Push(np.array([1.0]), 1.0, 100.0)]
     held = run_feedback(loop(integral=True), t, {}, np.array([0.3]), push)
     assert held.x[-1] == pytest.approx([0.3, 0, 0, 0], abs=1e-3)
     assert abs(run_feedback(loop(), t, {}, np.array([0.3]), push).x[-1, 0] - 0.3) > 0.2

@@ -94,7 +94,7 @@ class FeedbackRunRequest(StateFeedbackRequest):
     )
     setpoints: Annotated[Values, Field(description="Of controlled outputs, from t = 0 on.")] = Field(default={})
     limits: Limits = Field(default={})
-    push: PushShape | None = None
+    pushes: Annotated[list[PushShape], Field(max_length=8)] = Field(default=[])
     arrays: Literal["list", "f4"] = "list"
 
 
@@ -174,7 +174,7 @@ RUN_EXAMPLES: dict[str, Any] = {
             points=101,
             initial={"phi": 0.2618},
             limits={"F": [-20, 20]},
-            push={"size": 5, "start": 3, "duration": 0.1},
+            pushes=[{"size": 5, "start": 3, "duration": 0.1}],
         )
     },
     "a setpoint": {"value": {**_OSCILLATOR, "horizon": 10, "points": 51, "setpoints": {"y1": 1}}},
@@ -215,18 +215,17 @@ async def state_feedback(
 async def state_feedback_run(
     request: Annotated[FeedbackRunRequest, Body(openapi_examples=RUN_EXAMPLES)], workers: Workers
 ) -> Response:
-    """The plant's own equations under the feedback, with limits, a push and setpoints, beside the linear prediction.
+    """The plant's own equations under the feedback, with limits, pushes and setpoints, beside the linear prediction.
 
     An observer begins at the steady state: it does not know where the plant starts.
     """
-    push = request.push
     run = FeedbackRunSettings(
         request.horizon,
         request.points,
         request.initial,
         request.setpoints,
         _limits(request.limits),
-        None if push is None else (push.input, push.size, push.start, push.duration),
+        tuple((push.input, push.size, push.start, push.duration) for push in request.pushes),
     )
     return json_response(await workers.run(simulate_feedback, request.problem(), run), request.arrays)
 
@@ -248,7 +247,7 @@ async def state_feedback_region(
         raise InvalidInput("the two axes must be two states", field="vertical.state")
     horizontal, vertical = first.values(), second.values()
     starts = [(x, y) for y in vertical for x in horizontal]
-    run = FeedbackRunSettings(request.horizon, 2, {}, {}, _limits(request.limits), None)
+    run = FeedbackRunSettings(request.horizon, 2, {}, {}, _limits(request.limits), ())
     problem = request.problem()
     # One request takes no more of the workers than there are.
     free = asyncio.Semaphore(workers.workers)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -114,9 +115,9 @@ def loop_transfer(loop: LinearLoop) -> TransferFunction:
 
 
 def linear_run(
-    loop: LinearLoop, t: FloatArray, x0: FloatArray, r: FloatArray | None = None, push: Push | None = None
+    loop: LinearLoop, t: FloatArray, x0: FloatArray, r: FloatArray | None = None, pushes: Sequence[Push] = ()
 ) -> LinearRun:
-    """The linear response from a state, after a step of the setpoints at t = 0 and a push; exact.
+    """The linear response from a state, after a step of the setpoints at t = 0 and pushes; exact.
 
     The observer begins at the steady state: it does not know x0.
 
@@ -129,7 +130,7 @@ def linear_run(
         Deviation from the steady state.
     r : ndarray, shape (q,), or None
         Setpoints as deviations.
-    push : Push or None
+    pushes : sequence of Push
 
     Returns
     -------
@@ -143,30 +144,34 @@ def linear_run(
     model = loop.found.model
     n, size = model.states, loop.A.shape[0]
     steady = loop.B_r @ r if r is not None else np.zeros(size)
-    pushes = np.zeros((t.size, model.inputs))
     z = np.zeros(size)
     z[:n] = x0
-    edges: list[float] = [] if push is None else [push.start, push.start + push.duration]
+    edges = sorted({edge for push in pushes for edge in (push.start, push.start + push.duration)})
+
+    def pushed(at: float) -> FloatArray:
+        on = [push.size for push in pushes if push.start <= at < push.start + push.duration]
+        return np.asarray(sum(on, np.zeros(model.inputs)))
+
     states = np.empty((t.size, size))
-    now, done = 0.0, {}
+    now = 0.0
+    steps: dict[tuple[float, bytes], FloatArray] = {}
     with np.errstate(over="ignore", invalid="ignore"):
         for index, target in enumerate(t.tolist()):
-            for end in [*(e for e in edges if now < e < target), target]:
-                pushed = push is not None and edges[0] <= now < edges[1]
-                span = float(f"{end - now:.12g}")
-                if (span, pushed) not in done:
-                    forced = steady + (loop.B_d @ push.size if push is not None and pushed else 0.0)
+            for end in [*(edge for edge in edges if now < edge < target), target]:
+                d = pushed(now)
+                # Steps of equal length are the same to rounding: one exponential for all of them.
+                key = float(f"{end - now:.12g}"), d.tobytes()
+                if key not in steps:
                     whole = np.zeros((size + 1, size + 1))
-                    whole[:size, :size], whole[:size, size] = loop.A, forced
-                    done[span, pushed] = expm(whole * span)
-                z = done[span, pushed][:size, :size] @ z + done[span, pushed][:size, size]
+                    whole[:size, :size], whole[:size, size] = loop.A, steady + loop.B_d @ d
+                    steps[key] = expm(whole * key[0])
+                z = steps[key][:size, :size] @ z + steps[key][:size, size]
                 now = end
             states[index] = z
-            if push is not None and edges[0] <= target < edges[1]:
-                pushes[index] = push.size
     if not np.isfinite(states).all():
         raise InvalidInput("the linear response grows beyond all numbers", field="horizon", hint="a shorter horizon")
     u = states @ loop.F.T + (loop.N @ r if r is not None else 0.0)
     x = states[:, :n]
-    y = x @ model.C.T + (u + pushes) @ model.D.T
+    d = np.array([pushed(at) for at in t.tolist()])
+    y = x @ model.C.T + (u + d) @ model.D.T
     return LinearRun(t, x, y, u, states[:, -n:] if loop.found.L is not None else None)

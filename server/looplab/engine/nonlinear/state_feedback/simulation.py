@@ -121,7 +121,7 @@ def run_feedback(
     t: FloatArray,
     initial: Mapping[str, float],
     r: FloatArray | None = None,
-    push: Push | None = None,
+    pushes: Sequence[Push] = (),
     rtol: float = 1e-8,
 ) -> FeedbackRun:
     """The nonlinear model under its state feedback.
@@ -135,8 +135,8 @@ def run_feedback(
         States of the plant that do not start at the steady state. The observer starts there.
     r : ndarray, shape (q,), or None
         Setpoints as deviations, from the start on.
-    push : Push or None
-        Added to what the feedback does, after the limits.
+    pushes : sequence of Push
+        Added to what the feedback does, after the limits; 8 at most.
     rtol : float
         As in ``simulate_open_loop``.
 
@@ -150,7 +150,7 @@ def run_feedback(
     InvalidInput
         A state is unknown or out of its range.
     """
-    found = _simulate(loop, t, initial, r, push, rtol)
+    found = _simulate(loop, t, initial, r, pushes, rtol)
     n, p, m = len(loop.plant.state_names), len(loop.plant.output_names), len(loop.inputs)
     estimate = found.x[:, -n:] + np.array(loop.point.x) if loop.found.L is not None else None
     extra = found.y[:, p:].reshape(-1, m, 2)
@@ -164,7 +164,7 @@ def _simulate(
     t: FloatArray,
     initial: Mapping[str, float],
     r: FloatArray | None,
-    push: Push | None,
+    pushes: Sequence[Push],
     rtol: float,
 ) -> Simulation:
     closed = loop.closed()
@@ -177,9 +177,10 @@ def _simulate(
     }
     if r is not None:
         inputs |= {f"{closed.prefix}r{k}": value for k, value in enumerate(r.tolist())}
-    if push is not None:
-        for j, size in enumerate(push.size.tolist()):
-            inputs[f"{closed.prefix}d{j}"] = InputCourse(0.0, (pulse(size, push.duration, push.start),))
+    if pushes:
+        for j in range(len(loop.inputs)):
+            parts = tuple(pulse(float(each.size[j]), each.duration, each.start) for each in pushes)
+            inputs[f"{closed.prefix}d{j}"] = InputCourse(0.0, parts)
     return simulate_open_loop(closed.model, t, inputs, loop.parameters(), start, rtol=rtol)
 
 
@@ -232,6 +233,6 @@ def explore_region(
             )
     t = np.array([0.0, horizon])
     return [
-        outcome_of(loop, _simulate(loop, t, dict(zip(names, start, strict=True)), None, None, REGION_RTOL))
+        outcome_of(loop, _simulate(loop, t, dict(zip(names, start, strict=True)), None, (), REGION_RTOL))
         for start in starts
     ]
