@@ -22,6 +22,7 @@ PAGES = {
     "/labs/{lab_id}": "lab.html",
     "/plants": "plants.html",
     "/plants/{plant_id}": "plant.html",
+    "/state-feedback": "state-feedback.html",
     "/api": "api.html",
 }
 
