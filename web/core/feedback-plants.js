@@ -36,7 +36,7 @@ export const PROFILES = [
     controlled: "x",
     tilts: [
       { state: "phi", label: "Tilt", factor: 180 / Math.PI, unit: "°", min: -90, max: 90, step: 1 },
-      { state: "omega", label: "Turning already", factor: 1, unit: "rad/s", min: -8, max: 8, step: 0.1 },
+      { state: "omega", label: "Turning speed", factor: 1, unit: "rad/s", min: -8, max: 8, step: 0.1 },
     ],
     setpoint: { min: -0.8, max: 0.8, unit: "m", label: "Cart goes to" },
     limit: { min: 2, max: 50, value: 20, unit: "N" },

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -16,6 +15,8 @@ from looplab.engine.state_space.eigenvalues import eigenvalues
 from looplab.engine.systems.polynomial import ComplexArray, FloatArray, pair_conjugates
 
 LARGEST_POLE = 1e6
+# Turns of all eigenvectors; most of what they can gain comes with the first few.
+SWEEPS = 10
 
 
 @dataclass(frozen=True)
@@ -77,8 +78,8 @@ def place_poles(A: FloatArray, B: FloatArray, poles: Sequence[complex], dual: bo
     References
     ----------
     .. [1] A. Varga, A Schur method for pole assignment, IEEE Trans. Autom. Control 26 (1981) 517-519.
-    .. [2] A. L. Tits, Y. Yang, Globally convergent algorithms for robust pole assignment by state feedback, IEEE Trans.
-       Autom. Control 41 (1996) 1432-1452.
+    .. [2] J. Kautsky, N. K. Nichols, P. Van Dooren, Robust pole assignment in linear state feedback, Int. J. Control 41
+       (1985) 1129-1155.
     """
     n = A.shape[0]
     desired = _closed(poles, n)
@@ -152,17 +153,53 @@ def _single_input(A: FloatArray, b: FloatArray, poles: list[complex]) -> FloatAr
 
 
 def _several(A: FloatArray, B: FloatArray, poles: list[complex]) -> FloatArray:
-    # scipy.signal takes a second to import.
-    from scipy.signal import place_poles as robust
-
+    """The gain whose eigenvectors, each within what its pole allows, are turned away from all the others in turn."""
+    n, m = B.shape
     most = max(poles.count(p) for p in poles)
-    if most > B.shape[1]:
+    if most > m:
         raise InvalidInput(
-            f"a pole stands {most} times, which {B.shape[1]} independent inputs do not allow here",
+            f"a pole stands {most} times, which {m} independent inputs do not allow here",
             field="poles",
-            hint=f"repeat it at most {B.shape[1]} times, or spread the poles a little",
+            hint=f"repeat it at most {m} times, or spread the poles a little",
         )
-    with warnings.catch_warnings():
-        # What it converges to is told by error and condition.
-        warnings.simplefilter("ignore")
-        return np.asarray(robust(A, B, np.array(poles)).gain_matrix)
+    U, Z = np.linalg.qr(B, mode="complete")
+    rest = U[:, m:].T
+    allowed = [_null_space(rest @ (A - p * np.eye(n)), m) for p in poles]
+    start = np.random.default_rng(0).standard_normal((n, n))
+    X = np.eye(n, dtype=complex)
+    for i in range(n):
+        _turn(X, poles, allowed, i, start[:, i].astype(complex))
+    best, condition = X.copy(), float(np.linalg.cond(X))
+    for _ in range(SWEEPS):
+        for i, pole in enumerate(poles):
+            if pole.imag < 0:
+                continue
+            own = [i, i + 1] if pole.imag > 0 else [i]
+            others = np.delete(X, own, axis=1)
+            free = np.linalg.svd(np.hstack([others.real, others.imag]) if n > len(own) else np.zeros((n, 1)))[0]
+            away = free[:, -1] + (1j * free[:, -2] if pole.imag > 0 else 0.0)
+            _turn(X, poles, allowed, i, away)
+        now = float(np.linalg.cond(X))
+        if now < condition:
+            best, condition = X.copy(), now
+    M = np.linalg.solve(best.T, (best * np.array(poles)).T).T.real
+    return np.asarray(np.linalg.solve(Z[:m], U[:, :m].T @ (A - M)))
+
+
+def _null_space(matrix: ComplexArray, size: int) -> ComplexArray:
+    """An orthonormal basis of ``size`` columns."""
+    columns = matrix.shape[1]
+    if not matrix.size:
+        return np.eye(columns, dtype=complex)
+    return np.asarray(np.linalg.svd(matrix)[2][columns - size :].conj().T)
+
+
+def _turn(X: ComplexArray, poles: list[complex], allowed: list[ComplexArray], i: int, away: ComplexArray) -> None:
+    """Make eigenvector i, and its conjugate, as near to a direction as its pole allows."""
+    x = allowed[i] @ (allowed[i].conj().T @ away)
+    size = float(np.linalg.norm(x))
+    if poles[i].imag < 0 or not size:
+        return
+    X[:, i] = x / size
+    if poles[i].imag > 0:
+        X[:, i + 1] = X[:, i].conj()
