@@ -10,6 +10,8 @@ import { createTransport } from "./transport.js";
 /** @typedef {ReturnType<typeof createFeedbackSession>} FeedbackSession */
 /** @typedef {{moving: boolean, design: boolean}} FeedbackChange  design: what is said of the design may be new */
 
+/** Seconds from the press to the push: about what the server takes, so that nothing that was seen changes. */
+const LEAD = 0.1;
 /** A plant whose time is not that of people is played in this many seconds. */
 const PLAYED_IN = 6;
 
@@ -28,6 +30,8 @@ export function createFeedbackSession(api, initial) {
   let clock = 0;
   let playing = false;
   let pace = 1;
+  /** A push has been asked for, and the run that holds it is not there yet. */
+  let awaited = false;
   let moving = false;
   /** @type {Set<(change: FeedbackChange) => void>} */
   const listeners = new Set();
@@ -41,21 +45,26 @@ export function createFeedbackSession(api, initial) {
       const found = key === designed && design ? design : /** @type {FeedbackDesign} */ (await api.analyse("state-feedback", request));
       return { key, design: found, run: /** @type {FeedbackRun} */ (await api.analyse("state-feedback/simulate", runRequest(asked.state, found, asked.pushes))) };
     },
-    onAnswer(answer) {
+    onAnswer(answer, asked) {
+      // Who looks at how a run ended sees how the next one ends, while a pole is dragged or the track is taken away.
+      const ended = run !== null && clock > 0 && !playing && !awaited && clock >= endOf(run);
       ({ design, run } = answer);
+      if (asked.pushes === pushes) awaited = false;
       const anew = answer.key !== designed;
       designed = answer.key;
       error = null;
-      clock = Math.min(clock, endOf(run));
+      clock = ended ? endOf(run) : Math.min(clock, endOf(run));
       tell({ moving, design: anew });
     },
     onError(problem) {
       error = problem;
-      playing = false;
+      playing = awaited = false;
       tell({ moving: false, design: true });
     },
     retryAfter: (problem) => problem.retryAfter ?? null,
   });
+  /** Time of the plant in a second of playing. */
+  const rate = () => (run && profileOf(state.plant).horizon === null ? run.horizon / PLAYED_IN : 1) * pace;
   const ask = () => transport.push({ state, pushes });
 
   return {
@@ -84,7 +93,7 @@ export function createFeedbackSession(api, initial) {
       return playing;
     },
     get finished() {
-      return run !== null && clock >= endOf(run);
+      return run !== null && clock >= endOf(run) && !awaited;
     },
     get pushes() {
       return pushes;
@@ -102,6 +111,7 @@ export function createFeedbackSession(api, initial) {
       state = { ...state, ...patch };
       moving = how.moving ?? false;
       pushes = [];
+      awaited = false;
       if (other || patch.start) {
         clock = 0;
         playing = false;
@@ -138,8 +148,8 @@ export function createFeedbackSession(api, initial) {
       if (!push || !run || pushes.length >= MOST_PUSHES) return;
       const lost = run.nonlinear !== null && run.nonlinear.outcome !== "caught" && clock >= endOf(run);
       if (lost) return;
-      pushes = [...pushes, { size: sign * push.size, start: clock, duration: push.duration }];
-      playing = true;
+      pushes = [...pushes, { size: sign * push.size, start: clock + LEAD * rate(), duration: push.duration }];
+      playing = awaited = true;
       ask();
       tell({ moving: false, design: false });
     },
@@ -152,9 +162,8 @@ export function createFeedbackSession(api, initial) {
     /** @param {number} seconds  since the last tick */
     tick(seconds) {
       if (!playing || !run) return;
-      const rate = profileOf(state.plant).horizon === null ? run.horizon / PLAYED_IN : 1;
-      clock = Math.min(endOf(run), clock + seconds * rate * pace);
-      if (clock >= endOf(run)) {
+      clock = Math.min(endOf(run), clock + seconds * rate());
+      if (clock >= endOf(run) && !awaited) {
         playing = false;
         tell({ moving: false, design: false });
       }

@@ -183,6 +183,14 @@ export function polesLine(poles) {
   return poles.map(([re, im]) => (im === 0 ? short(re) : `${short(re)}${im < 0 ? "-" : "+"}${short(Math.abs(im))}i`)).join(", ");
 }
 
+/** @type {Record<string, string>} */
+const GREEK = { phi: "φ", omega: "ω" };
+
+/** A state's name as it is written. @param {string} name */
+export function written(name) {
+  return GREEK[name] ?? name;
+}
+
 /** The same with signs as they are printed. @param {Complex[]} poles */
 export function polesText(poles) {
   return polesLine(poles).replaceAll("-", "−");

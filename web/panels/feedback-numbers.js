@@ -2,7 +2,7 @@
 
 /** @import {FeedbackSession} from "../core/feedback-session.js" */
 
-import { polesText } from "../core/feedback.js";
+import { polesText, written } from "../core/feedback.js";
 import { formatFixed, formatNumber, formatWithUnit, sentence } from "../core/format.js";
 import { h } from "../components/dom.js";
 import { matrixBlock, valueTable } from "../components/facts.js";
@@ -18,7 +18,7 @@ export function mount(host, session) {
       if (!design) return;
       const { margins, feedback, observer } = design;
       const x = design.observer ? "x̂" : "x";
-      const law = `u = u₀ − K (${x} − x₀)${design.K_I ? " + K_I ∫(r − y) dt" : design.N ? " + N (r − y₀)" : ""}`;
+      const integral = design.K_I ? [" + K", h("sub", {}, "I"), " ∫(r − y) dt"] : [design.N ? " + N (r − y₀)" : ""];
       const rows = [
         ["Poles of the plant", polesText(design.poles)],
         ["Poles under feedback", polesText(feedback.obtained)],
@@ -41,11 +41,11 @@ export function mount(host, session) {
             ? "Poles of feedback and observer do not disturb each other, but the margins pay for what is not measured."
             : "Drag the poles left: the catch gets faster, the gains and the force grow.";
       body.replaceChildren(
-        h("p", { class: "feedback-law" }, law),
-        h("p", { class: "field-hint" }, `x = (${design.states.map(({ name }) => name).join(", ")})`),
+        h("p", { class: "feedback-law" }, `u = u₀ − K (${x} − x₀)`, ...integral),
+        h("p", { class: "field-hint" }, `x = (${design.states.map(({ name }) => written(name)).join(", ")})`),
         h("div", { class: "matrices" }, matrixBlock("K", design.K), ...(design.K_I ? [matrixBlock("K_I", design.K_I)] : []), ...(design.N ? [matrixBlock("N", design.N)] : []), ...(design.L ? [matrixBlock("L", design.L)] : [])),
         ...(design.N_reason ? [h("p", { class: "finding" }, sentence(design.N_reason))] : []),
-        h("div", { class: "feedback-tables" }, valueTable("Poles", ["", "s"], rows), valueTable("Where the input enters the plant", ["", ""], robust)),
+        h("div", { class: "feedback-tables" }, valueTable("Where the poles are", ["", "s"], rows), valueTable("Where the input enters the plant", ["", ""], robust)),
         h("p", { class: "feedback-lesson" }, lesson),
       );
     },

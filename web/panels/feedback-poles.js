@@ -3,7 +3,7 @@
 /** @import {FeedbackSession} from "../core/feedback-session.js" */
 /** @import {Complex, Ranges, Table} from "../core/types.js" */
 
-import { parsePoles, polesLine, stateCount, weightsOf } from "../core/feedback.js";
+import { parsePoles, polesLine, stateCount, weightsOf, written } from "../core/feedback.js";
 import { formatComplex } from "../core/roots.js";
 import { tidy } from "../core/scale.js";
 import { h, set, setText, uniqueId } from "../components/dom.js";
@@ -164,7 +164,7 @@ export function mount(host, session) {
       return field;
     };
     weights.replaceChildren(
-      ...names.map((name, i) => slider(`Weight of ${name}`, weightsOf(state)[i] ?? 1, (value) => ({ weights: weightsOf(session.state).map((old, k) => (k === i ? value : old)) }))),
+      ...names.map((name, i) => slider(`Weight of ${written(name)}`, weightsOf(state)[i] ?? 1, (value) => ({ weights: weightsOf(session.state).map((old, k) => (k === i ? value : old)) }))),
       slider("Weight of effort", state.effort, (effort) => ({ effort })),
     );
   }

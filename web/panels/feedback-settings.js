@@ -31,7 +31,7 @@ export function mount(host, session) {
   observer.addEventListener("value-change", () => session.set({ observer: observer.value === "on" }));
   const speed = h("gain-slider", { label: "Observer faster by", min: 1, max: 20, above: 0 });
   for (const event of ["value-input", "value-change"]) speed.addEventListener(event, () => session.set({ speed: speed.value }, { moving: event === "value-input" }));
-  const observed = h("p", { class: "field-hint" }, "It starts upright in its mind: it has to find out about the tilt.");
+  const observed = h("p", { class: "field-hint" }, "Its first estimate is upright and at rest: it has to find out about the tilt.");
 
   const reach = h("segmented-control", { label: "How the setpoint is reached" });
   reach.options = [

@@ -63,6 +63,6 @@ export function feedbackRunPlot({ rows, horizon, cursor, timeUnit }, theme, held
   return {
     traces,
     ranges,
-    layout: { ...baseLayout(theme), margin: { l: 62, r: 12, t: 8, b: 40 }, ...axes, xaxis: axis(theme, `time [${unit}]`, window, { anchor: rows.length > 1 ? `y${rows.length}` : "y", zeroline: false, nticks: 8 }) },
+    layout: { ...baseLayout(theme), margin: { l: 70, r: 12, t: 8, b: 40 }, ...axes, xaxis: axis(theme, `time [${unit}]`, window, { anchor: rows.length > 1 ? `y${rows.length}` : "y", zeroline: false, nticks: 8 }) },
   };
 }
