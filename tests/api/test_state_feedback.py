@@ -109,3 +109,15 @@ def test_what_cannot_be_is_refused_by_name(post: Any, change: dict[str, Any], pa
     error = response.json()["error"]
     assert error["path"] == path
     assert words in error["message"]
+
+
+def test_a_grid_is_held_to_its_limits(post: Any) -> None:
+    axes = {"horizontal": {"state": "phi", "low": -1, "high": 1, "count": 61}}
+    request = {"plant": PENDULUM, "gain": POLES, "horizon": 6, **axes}
+    for vertical, path in (({"state": "omega", "count": 61}, "vertical.count"), ({"state": "phi"}, "vertical.state")):
+        response = post("/state-feedback/region", {**request, "vertical": {"low": -1, "high": 1, **vertical}})
+        assert response.status_code == 422
+        assert response.json()["error"]["path"] == path
+    linear = {**request, "plant": {**CART}, "gain": {"method": "poles", "poles": [-1, -2]}}
+    response = post("/state-feedback/region", {**linear, "vertical": {"state": "x2", "low": -1, "high": 1, "count": 2}})
+    assert "from everywhere" in response.json()["error"]["message"]

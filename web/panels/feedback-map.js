@@ -27,7 +27,7 @@ const LOOKS = {
   caught: { outcome: "caught", label: "caught", kind: "caught" },
   fallen: { outcome: "fallen", label: "fell", kind: "lost" },
   end_of_track: { outcome: "end_of_track", label: "off the track", kind: "left" },
-  stopped: { outcome: "stopped", label: "ran away", kind: "lost" },
+  stopped: { outcome: "stopped", label: "stopped", kind: "lost" },
   unsettled: { outcome: "unsettled", label: "not at rest", kind: "open" },
 };
 

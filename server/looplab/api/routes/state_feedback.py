@@ -42,8 +42,9 @@ from looplab.schemas.state_feedback import (
 
 router = APIRouter(tags=["state space"], route_class=StrictRoute)
 
-# Starts of one worker task: a fraction of its processor time.
-STRIP = 40
+# Starts of one worker task, which have its processor time together, and of one request.
+STRIP = 20
+MOST_STARTS = 1_000
 Horizon = Annotated[float, Field(ge=1e-6, le=1e6, description="[time]")]
 Limits = Annotated[
     dict[str, Annotated[list[float], Field(min_length=2, max_length=2)]],
@@ -245,6 +246,12 @@ async def state_feedback_region(
     first, second = request.horizontal, request.vertical
     if first.state == second.state:
         raise InvalidInput("the two axes must be two states", field="vertical.state")
+    if first.count * second.count > MOST_STARTS:
+        raise InvalidInput(
+            f"{first.count} x {second.count} starts are more than {MOST_STARTS}",
+            field="vertical.count",
+            hint="ask for the grid in bands",
+        )
     horizontal, vertical = first.values(), second.values()
     starts = [(x, y) for y in vertical for x in horizontal]
     run = FeedbackRunSettings(request.horizon, 2, {}, {}, _limits(request.limits), ())

@@ -23,6 +23,8 @@ from looplab.engine.systems.polynomial import FloatArray
 CAUGHT = 1e-3
 # Less exact than a run that is drawn: only the end counts.
 REGION_RTOL = 1e-6
+# Evaluations of one run of many: several times what a run takes that settles.
+REGION_CALLS = 3_000
 
 
 @dataclass(frozen=True)
@@ -166,6 +168,7 @@ def _simulate(
     r: FloatArray | None,
     pushes: Sequence[Push],
     rtol: float,
+    budget: int | None = None,
 ) -> Simulation:
     closed = loop.closed()
     own = loop.plant.states(initial, loop.point.x)
@@ -181,7 +184,7 @@ def _simulate(
         for j in range(len(loop.inputs)):
             parts = tuple(pulse(float(each.size[j]), each.duration, each.start) for each in pushes)
             inputs[f"{closed.prefix}d{j}"] = InputCourse(0.0, parts)
-    return simulate_open_loop(closed.model, t, inputs, loop.parameters(), start, rtol=rtol)
+    return simulate_open_loop(closed.model, t, inputs, loop.parameters(), start, rtol=rtol, budget=budget)
 
 
 def outcome_of(loop: FeedbackLoop, run: Simulation, r: FloatArray | None = None) -> str:
@@ -233,6 +236,6 @@ def explore_region(
             )
     t = np.array([0.0, horizon])
     return [
-        outcome_of(loop, _simulate(loop, t, dict(zip(names, start, strict=True)), None, (), REGION_RTOL))
+        outcome_of(loop, _simulate(loop, t, dict(zip(names, start, strict=True)), None, (), REGION_RTOL, REGION_CALLS))
         for start in starts
     ]
