@@ -50,7 +50,7 @@ export function defaultFeedback(plant = "cart-pendulum") {
   const [tilt] = profile.tilts;
   /** @type {Record<string, number>} */
   const start = {};
-  if (tilt) start[tilt.state] = tilt.state === "phi" ? FIRST_TILT / tilt.factor : tilt.max / 3 / tilt.factor;
+  if (tilt) start[tilt.state] = tilt.state === "phi" ? FIRST_TILT / tilt.factor : (0.4 * tilt.max) / tilt.factor;
   if (profile.id === "matrices") start["x1"] = 1;
   return { plant: profile.id, matrices: MATRICES, method: profile.poles ? "poles" : "lqr", poles: profile.poles ?? [], weights: [], effort: 1, observer: false, speed: 4, integral: false, setpoint: 0, start, limit: profile.limit?.value ?? null, endless: false };
 }

@@ -19,7 +19,7 @@ export function mount(host, session) {
   const frame = createPanelFrame(host, {
     id: "feedback-run",
     title: "Run",
-    help: "Solid: what the plant does, by its own nonlinear equations, limits included. Dashed: what the linear model predicts. Where they part, the linear law no longer knows its plant. Dotted red: limits.",
+    help: "Solid: what the plant does, by its own nonlinear equations, limits included. Dashed: what the linear model predicts. Where they part, the linear law no longer knows its plant. Dotted: limits in red, and what an observer takes the states for.",
     figure: createFigure,
     table,
   });
@@ -51,7 +51,7 @@ export function mount(host, session) {
       const unit = tilt?.unit ?? [...design.states, ...design.outputs, ...design.inputs].find((each) => each.name === name)?.unit ?? "";
       const scaled = (/** @type {number[] | undefined} */ values) => (values ?? []).map((value) => factor * value);
       const column = found[kind][name];
-      return { name: tilt ? "tilt" : name, unit, signal, t: [...found.t.slice(0, count), session.clock], values: scaled([...(column ?? []).slice(0, count), now[name] ?? NaN]), whole: scaled((column ?? []).slice(0, whole)), predictedT: linear?.t ?? [], predicted: scaled(linear?.[kind][name]), limits };
+      return { name: tilt ? "tilt" : name, unit, signal, t: [...found.t.slice(0, count), session.clock], values: scaled([...(column ?? []).slice(0, count), now[name] ?? NaN]), whole: scaled((column ?? []).slice(0, whole)), predictedT: linear?.t ?? [], predicted: scaled(linear?.[kind][name]), estimate: scaled(found.estimates?.[name]?.slice(0, count)), limits };
     };
     const input = design.inputs[0]?.name ?? "";
     const track = profile.id === "cart-pendulum" && !state.endless ? [-1.2, 1.2] : [];
@@ -81,8 +81,9 @@ export function mount(host, session) {
   function tell() {
     const words = rows().map(({ name, unit, values }) => `${name} is ${formatNumber(values.at(-1))} ${unit}`);
     frame.tell(`At t = ${formatNumber(session.clock)}: ${words.join(", ")}.`, [
-      { signal: "y", label: "what happens", name: "by the plant's own equations" },
-      ...(session.run?.nonlinear ? [{ signal: "rule", label: "linear prediction", name: "by the model that the feedback was designed on", dash: "dash" }] : []),
+      { signal: "y", label: "plant", name: "by the plant's own equations" },
+      ...(session.design?.observer ? [{ signal: "d", label: "estimate", name: "what the observer takes the state for", dash: "dot" }] : []),
+      ...(session.run?.nonlinear ? [{ signal: "rule", label: "linear model", name: "by the model that the feedback was designed on", dash: "dash" }] : []),
     ]);
   }
 

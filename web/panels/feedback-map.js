@@ -129,7 +129,6 @@ export function mount(host, session, api) {
     const count = outcomes.flat().filter((outcome) => outcome === "caught").length;
     frame.tell(`Map of ${ROWS * COLUMNS} starts: ${count} are caught.`, [
       ...met.map(({ label, kind }) => ({ signal: kind === "caught" ? "stable" : kind === "lost" ? "unstable" : kind === "left" ? "u" : "rule", label, name: `runs that end so`, glyph: kind === "caught" ? "●" : kind === "lost" ? "×" : kind === "left" ? "–" : "○" })),
-      { signal: "pole", label: "start", name: "where the run begins: move it", glyph: "■" },
     ]);
   }
 
@@ -179,7 +178,7 @@ export function mount(host, session, api) {
     const old = mapped !== "" && mapped !== key();
     frame.root.classList.toggle("stale", old);
     setText(start, mapped === "" ? "Map the region" : "Map again");
-    if (bar.hidden || old) setText(status, mapped === "" ? `${ROWS * COLUMNS} runs, a few seconds.` : old ? "The design has changed since." : "Click anywhere in it to run from there.");
+    if (bar.hidden || old) setText(status, mapped === "" ? `${ROWS * COLUMNS} runs, a few seconds.` : old ? "The design has changed since." : "Click in it, or move the square, to run from there.");
     const [across, up] = found.sides;
     handle.show({ x: (session.state.start[across.state] ?? 0) * found.factors[0], y: (session.state.start[up.state] ?? 0) * found.factors[1] });
   }

@@ -6,7 +6,7 @@
 import { axis, baseLayout, extent, holdRange } from "./axes.js";
 import { escapePlotly } from "./escape.js";
 
-/** @typedef {{name: string, unit: string, signal: string, t: number[], values: number[], whole: number[], predictedT: number[], predicted: number[], limits: number[]}} FeedbackRow  whole: the values of the complete run, which the axis is for */
+/** @typedef {{name: string, unit: string, signal: string, t: number[], values: number[], whole: number[], predictedT: number[], predicted: number[], estimate: number[], limits: number[]}} FeedbackRow  estimate: the observer's, empty without one; whole: the values of the complete run, which the axis is for */
 
 const GAP = 0.06;
 /** How far beyond what happens the prediction may widen an axis, in parts of what happens. */
@@ -56,6 +56,7 @@ export function feedbackRunPlot({ rows, horizon, cursor, timeUnit }, theme, held
     traces.push(
       limit,
       curve("linear prediction", row.predictedT, row.predicted, { color: theme.muted, width: 1.75, dash: "dash" }),
+      curve("estimate", row.estimate.length > 0 ? row.t.slice(0, row.estimate.length) : [], row.estimate, { color: theme.signal["d"] ?? theme.ink, width: 1.75, dash: "dot" }),
       curve("what happens", row.t, row.values, { color: colour, width: 2.5 }),
       { type: "scatter", mode: "lines", name: `now${number}`, x: [cursor, cursor], y: [...range], yaxis: `y${number}`, line: { color: theme.axis, width: 1 }, hoverinfo: "skip" },
     );

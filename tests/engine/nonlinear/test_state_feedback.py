@@ -14,7 +14,7 @@ from looplab.engine.design.state_feedback import (
     linear_run,
 )
 from looplab.engine.nonlinear.state_feedback.simulation import FeedbackLoop, explore_region, run_feedback
-from looplab.engine.nonlinear.steady_states import linearize
+from looplab.engine.nonlinear.steady_states import linearize, steady_state_near
 from looplab.engine.state_space import StateSpaceModel
 from looplab.plants import load_plant
 
@@ -134,3 +134,17 @@ def test_the_region_agrees_with_runs_by_hand():
         expected.append(happened[0][1] if happened else "caught")
     assert set(expected) == {"caught", "end_of_track", "fallen"}
     assert explore_region(under, 6.0, ("phi", "omega"), starts) == expected
+
+
+def test_what_begins_at_rest_is_caught_where_rest_is_known_to_rounding():
+    reactor = load_plant("cstr")
+    at = reactor.document.operating_points[0]
+    u, p = reactor.inputs(at.inputs), reactor.parameters(at.parameters)
+    point = linearize(reactor, steady_state_near(reactor, u, p, reactor.states(at.near, reactor.x0)).x, u, p)
+    assert (point.poles.real > 0).any()
+    Q = [reactor.input_names.index("Q")]
+    model = StateSpaceModel(point.jacobians.A, point.jacobians.B[:, Q], point.jacobians.C, point.jacobians.D[:, Q])
+    found = design_state_feedback(model, DesignSettings(ByPoles((-2, -3)), None, (), (), False))
+    under = FeedbackLoop(reactor, point, found, tuple(Q), np.array([[0, 2e7]]))
+    T = point.x[reactor.state_names.index("T")]
+    assert explore_region(under, 6.0, ("T", "cA"), [(T, point.x[0]), (T + 20, point.x[0])]) == ["caught", "caught"]

@@ -21,6 +21,8 @@ from looplab.engine.systems.polynomial import FloatArray
 
 # Caught: the deviation, measured by the linear loop's Lyapunov function, has shrunk to this part of where it began.
 CAUGHT = 1e-3
+# A deviation of this part of a state is none.
+AT_REST = 1e-5
 # Less exact than a run that is drawn: only the end counts.
 REGION_RTOL = 1e-6
 # Evaluations of one run of many: several times what a run takes that settles.
@@ -198,7 +200,9 @@ def outcome_of(loop: FeedbackLoop, run: Simulation, r: FloatArray | None = None)
     if run.truncated_at is None and P is not None:
         e = run.x[:, : len(loop.point.x)] - np.array(loop.point.x) - loop.rest(r)
         V = np.einsum("ti,ij,tj->t", e, P, e)
-        if V[-1] <= CAUGHT * V.max():
+        # At rest from the start: what is left of it is rounding.
+        nothing = float(np.diag(P) @ (AT_REST * np.array(loop.point.x)) ** 2)
+        if V[-1] <= CAUGHT * max(V.max(), nothing):
             return "caught"
     if run.events:
         return run.events[0].name
