@@ -19,6 +19,7 @@ ROUTES = [
     *("/plants/cstr/simulate", "/models/simulate", "/models/validate", "/plants/cstr/control", "/models/control"),
     *("/tune/optimal", "/tune/trade-off", "/compare", "/gain-map", "/controller-forms"),
     *("/mimo/rga", "/mimo/simulate", "/mimo/interaction", "/mimo/decoupler", "/mimo/tune"),
+    *("/state-feedback", "/state-feedback/simulate", "/state-feedback/region"),
 ]
 RAW = {
     "empty": b"",

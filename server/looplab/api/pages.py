@@ -24,6 +24,7 @@ PAGES = {
     "/plants/{plant_id}": "plant.html",
     "/experiments": "experiments.html",
     "/mimo": "mimo.html",
+    "/state-feedback": "state-feedback.html",
     "/api": "api.html",
 }
 

@@ -29,7 +29,9 @@ PRELOAD = [
     "looplab.jobs.tasks",
     "looplab.jobs.steady_tasks",
     "looplab.jobs.linear_tasks",
+    "looplab.jobs.feedback_tasks",
     "looplab.engine.nonlinear.control_loop.simulation",
+    "looplab.engine.nonlinear.state_feedback.simulation",
 ]
 # A short burst is held back rather than refused.
 HOLD = 0.5

@@ -22,6 +22,7 @@ from looplab.api.routes import (
     root_locus,
     routh,
     stability,
+    state_feedback,
     state_space,
     tune,
 )
@@ -47,6 +48,7 @@ ROUTERS = tuple(
         state_space,
         mimo,
         mimo_loops,
+        state_feedback,
         plants,
         plant_steady_states,
         models,

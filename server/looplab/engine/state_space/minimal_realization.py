@@ -58,7 +58,7 @@ class MinimalRealization:
     largest_removed: float | None
 
 
-def _staircase(A: FloatArray, B: FloatArray, tolerance: float) -> tuple[FloatArray, int, list[float]]:
+def staircase(A: FloatArray, B: FloatArray, tolerance: float) -> tuple[FloatArray, int, list[float]]:
     """Orthogonal coordinates whose first r states are the ones B reaches, r, and every singular value that decided."""
     n = A.shape[0]
     Q, done, decided = np.eye(n), 0, []
@@ -96,7 +96,7 @@ def remove_hidden_modes(A: FloatArray, B: FloatArray, C: FloatArray, tolerance: 
         if side == "output":
             A, B, C = A.T, C.T, B.T
         speed = float(np.abs(A).max(initial=0.0)) or 1.0
-        Q, rank, sigma = _staircase(A / speed, B, tolerance)
+        Q, rank, sigma = staircase(A / speed, B, tolerance)
         decided += sigma
         A, B, C = Q.T @ A @ Q, Q.T @ B, C @ Q
         removed += [RemovedMode(complex(p), side, bool(p.real < 0)) for p in eigenvalues(A[rank:, rank:])]

@@ -1,0 +1,1 @@
+"""Controllers made from a model of the plant."""
