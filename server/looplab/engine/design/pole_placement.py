@@ -24,6 +24,8 @@ Structure = Literal["biproper", "strictly_proper"]
 ONE = TransferFunction()
 # Above this the answer of Sylvester's matrix is noise, whatever the refinement.
 LARGEST_CONDITION = 1e14
+# Poles chosen for the caller: damping of the first pair, how much faster than the plant, and than those given.
+DAMPING, QUICKER, SPREAD = 0.7, 2.0, 3.0
 
 
 @dataclass(frozen=True)
@@ -108,6 +110,39 @@ def required_degree(
     return 2 * plant.order + L_factor.zeros.size - (1 if structure == "biproper" else 0)
 
 
+def completed_poles(plant: TransferFunction, given: ComplexArray, required: int) -> ComplexArray:
+    """Poles that bring the given ones up to the number required: well damped, and faster than those given.
+
+    Parameters
+    ----------
+    plant : TransferFunction
+        Its poles set the pace where none are given.
+    given : ndarray of complex
+    required : int
+
+    Returns
+    -------
+    ndarray of complex
+        Empty where enough are given.
+    """
+    missing = required - given.size
+    if missing <= 0:
+        return np.zeros(0, dtype=complex)
+    out: list[complex] = []
+    if given.size:
+        pace = SPREAD * float(np.abs(given).max())
+    else:
+        sizes = np.abs(plant.poles[plant.poles != 0])
+        pace = QUICKER * float(np.exp(np.log(sizes).mean())) if sizes.size else 1.0
+        if missing >= 2:
+            out = [pace * complex(-DAMPING, sign * (1.0 - DAMPING**2) ** 0.5) for sign in (1.0, -1.0)]
+            pace *= SPREAD
+    out += [complex(-pace * (1.0 + 0.25 * i)) for i in range(missing - len(out))]
+    # Figures that a person would type.
+    rounded = [complex(float(f"{p.real:.3g}"), float(f"{p.imag:.3g}")) for p in out]
+    return np.array(rounded, dtype=complex)
+
+
 def _without_dead_time(plant: TransferFunction, order: int | None) -> TransferFunction:
     if not plant.theta:
         return plant
@@ -151,7 +186,13 @@ def _reduced(plant: TransferFunction, root: complex) -> str:
     return TransferFunction(left["zeros"], left["poles"], plant.gain).to_text()
 
 
-def _refuse_close(plant: TransferFunction, poles: ComplexArray, condition: float) -> InvalidInput:
+def _refuse_condition(plant: TransferFunction, poles: ComplexArray, condition: float) -> InvalidInput:
+    if not (plant.zeros.size and poles.size):
+        return InvalidInput(
+            f"the wanted poles and the plant's are too far apart for double precision (condition {condition:.1e})",
+            field="D",
+            hint="choose poles nearer to those of the plant, or fewer",
+        )
     pole, zero = nearest_pair(poles, plant.zeros)
     return InvalidInput(
         f"numerator and denominator are too nearly not coprime: the pole {pole_text(pole)} lies at the zero "
@@ -246,8 +287,8 @@ def pole_placement(
     scale = _scale(plant.poles, plant.zeros, wanted)
     D = from_roots(wanted)
     found = solve_diophantine(from_roots(all_poles), plant.num, D, scale)
-    if not found.condition < LARGEST_CONDITION and plant.zeros.size:
-        raise _refuse_close(plant, all_poles, found.condition)
+    if not found.condition < LARGEST_CONDITION:
+        raise _refuse_condition(plant, all_poles, found.condition)
     if found.L.size - 1 < wanted.size - all_poles.size:
         raise ImproperSystem(
             "with these poles the controller would have to differentiate", field="D", hint="give one pole more"

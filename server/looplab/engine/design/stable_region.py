@@ -118,7 +118,7 @@ def gain_crossings(loop: MismatchLoop, tau: FloatArray, theta: FloatArray, highe
     omega = refine_brackets(lambda w: gain(w, tau[row], theta[row]).imag, grid[at], grid[at + 1])
     K = gain(omega, tau[row], theta[row]).real
     change = 2 * (rises[row, at] - rises[row, at + 1])
-    used = (0 < K) & (highest >= K)
+    used = (K > 0) & (highest >= K)
     at_rest = np.zeros(0) if loop.origin else np.array([-1.0 / (loop.C * loop.plant).dc_gain])
     at_rest = at_rest[(at_rest > 0) & (at_rest <= highest)]
     unknown = np.full(at_rest.size, UNKNOWN)
