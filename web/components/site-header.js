@@ -8,6 +8,7 @@ const PAGES = [
   { id: "home", href: "/", label: "Home" },
   { id: "workbench", href: "/workbench", label: "Workbench" },
   { id: "plants", href: "/plants", label: "Plants" },
+  { id: "design", href: "/design", label: "Design" },
   { id: "labs", href: "/labs", label: "Labs" },
 ];
 

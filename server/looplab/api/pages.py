@@ -22,6 +22,9 @@ PAGES = {
     "/labs/{lab_id}": "lab.html",
     "/plants": "plants.html",
     "/plants/{plant_id}": "plant.html",
+    "/design": "design.html",
+    "/pole-placement": "pole-placement.html",
+    "/smith-predictor": "smith-predictor.html",
     "/api": "api.html",
 }
 

@@ -51,6 +51,8 @@ class PolePlacementAnswer(Answer):
     time_unit: str
     C: DesignedController
     equation: Equation
+    plant_poles: Annotated[list[ComplexPair], Field(description="Of the plant the poles are placed for.")]
+    plant_zeros: list[ComplexPair]
     wanted: Annotated[list[ComplexPair], Field(description="The poles that were placed.")]
     added: Annotated[list[ComplexPair], Field(description="Those of them that were chosen here.")]
     required: Annotated[int, Field(description="Number of poles that this plant and controller need.")]

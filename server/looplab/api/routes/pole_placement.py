@@ -148,6 +148,8 @@ def place(request: Annotated[PolePlacementRequest, Body(openapi_examples=EXAMPLE
                 "P": (found.P / found.L[0]).tolist(),
                 "D": (found.D / found.L[0]).tolist(),
             },
+            "plant_poles": complex_pairs(found.design_plant.poles),
+            "plant_zeros": complex_pairs(found.design_plant.zeros),
             "wanted": complex_pairs(np.concatenate([wanted, added])),
             "added": complex_pairs(added),
             "required": required,

@@ -1,0 +1,2 @@
+/** Placeholder until its panels exist. */
+import "../components/site-header.js";
