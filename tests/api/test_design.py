@@ -32,7 +32,7 @@ def test_the_example_of_the_notes(post: Any) -> None:
 def test_missing_poles_are_added_where_asked(post: Any) -> None:
     request = {"plant": PLANT, "poles": [-3, [-2, 1], [-2, -1]], "integrator": True, "complete": True}
     found = ask(post, "/pole-placement", request, PolePlacementAnswer)
-    assert found["added"] == [[-9.0, 0.0]]
+    assert found["added"] == [[-4.5, 0.0]]
     assert found["static_gain"] == 1
     assert found["C"]["pid"]["type"] == "pid"
     assert "4 of them" in post("/pole-placement", request | {"complete": False}).json()["error"]["message"]

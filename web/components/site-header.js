@@ -35,16 +35,20 @@ export class SiteHeader extends HTMLElement {
       show();
     });
     show();
+    const nav = h("nav", { "aria-label": "Pages" }, ...PAGES.map(({ id, href, label }) => h("a", { href, "aria-current": id === current ? "page" : null }, label)));
     this.append(
       h("a", { class: "skip-link", href: "#main" }, "Skip to content"),
       h(
         "header",
         { class: "site-header" },
         h("a", { class: "brand", href: "/", "aria-label": "looplab, home" }, brandMark(), h("span", {}, "looplab")),
-        h("nav", { "aria-label": "Pages" }, ...PAGES.map(({ id, href, label }) => h("a", { href, "aria-current": id === current ? "page" : null }, label))),
+        nav,
         theme,
       ),
     );
+    // On a narrow screen the page that is shown may be out of sight.
+    const here = /** @type {HTMLElement | null} */ (nav.querySelector("[aria-current]"));
+    if (here) nav.scrollLeft = here.offsetLeft + here.offsetWidth - nav.offsetLeft - nav.clientWidth;
   }
 }
 

@@ -33,6 +33,10 @@ export function createDesignBench({ state, send, accept = () => ({}), write = ()
   /** @type {Set<(change: Change) => void>} */
   const listeners = new Set();
   let writing = 0;
+  function writeSoon() {
+    clearTimeout(writing);
+    writing = window.setTimeout(() => write(bench.state), WRITE_MS);
+  }
   const tell = (/** @type {Change} */ change) => {
     for (const listener of listeners) listener(change);
   };
@@ -44,6 +48,8 @@ export function createDesignBench({ state, send, accept = () => ({}), write = ()
       // What has moved on meanwhile is not put back.
       if (asked === bench.state) bench.state = { ...bench.state, ...accept(bench.state, answer, { moving }) };
       tell({ moving, what: "answer" });
+      // What the answer changed belongs in the address too; a page that was only opened keeps its own.
+      if (!moving && asked !== opened) writeSoon();
     },
     onError(error, { moving }) {
       bench.error = error;
@@ -61,14 +67,14 @@ export function createDesignBench({ state, send, accept = () => ({}), write = ()
       bench.state = { ...bench.state, ...patch };
       tell({ moving, what: "state" });
       if (ask) transport.push({ state: bench.state, moving });
-      clearTimeout(writing);
-      if (!moving) writing = window.setTimeout(() => write(bench.state), WRITE_MS);
+      if (!moving) writeSoon();
     },
     subscribe(listener) {
       listeners.add(listener);
       return () => listeners.delete(listener);
     },
   };
+  const opened = bench.state;
   queueMicrotask(() => transport.push({ state: bench.state, moving: false }));
   return bench;
 }

@@ -2,7 +2,7 @@
 
 import { createApi } from "../core/api.js";
 import { createDesignBench, writeAddress } from "../core/design-bench.js";
-import { countOf, groupsOf } from "../core/pole-groups.js";
+import { countOf, groupsOf, trimmed } from "../core/pole-groups.js";
 import { place, placementFromQuery, placementToQuery } from "../core/pole-placement.js";
 import { h } from "../components/dom.js";
 import { enlargeable } from "../components/enlarge.js";
@@ -18,8 +18,12 @@ if (host) {
   const bench = createDesignBench({
     state: placementFromQuery(location.search),
     send: (state, how) => place(api, state, how),
-    // Poles that were added or left out; while one is dragged it stays under the pointer.
-    accept: ({ groups }, { design }, { moving }) => (!moving && countOf(groups) !== design.wanted.length ? { groups: groupsOf(design.wanted) } : {}),
+    // Poles that were added or left out; the others stay as they are, and so do their handles.
+    accept({ groups }, { design }, { moving }) {
+      if (moving || countOf(groups) === design.wanted.length) return {};
+      const kept = [...trimmed(groups, design.required), ...groupsOf(design.added)];
+      return { groups: countOf(kept) === design.wanted.length ? kept : groupsOf(design.wanted) };
+    },
     write: (state) => writeAddress(placementToQuery(state)),
   });
   const [rail, stage, side] = [h("div", { class: "design-rail" }), h("div", { class: "design-stage" }), h("div", { class: "design-side" })];

@@ -17,6 +17,9 @@ const HELP =
 const FRAGILE_MS = 2;
 const ILL_CONDITIONED = 1e8;
 
+/** Whether a single integrator is all that keeps a controller from being stable by itself. @param {Placed["C"]} C */
+const integratesOnly = ({ poles, integrators }) => integrators === 1 && poles.every(([re, im]) => re < 0 || (re === 0 && im === 0));
+
 /** @param {HTMLElement} host @param {DesignBench<PlacementState, PlacementAnswer>} bench */
 export function mount(host, bench) {
   const code = h("pre", { class: "design-code", tabindex: 0, role: "region", "aria-label": "Python code of this design" });
@@ -36,7 +39,7 @@ export function mount(host, bench) {
   function warnings({ design, loop }) {
     const { margins } = loop.panels;
     const out = [];
-    if (!design.C.stable && design.C.integrators === 0) out.push("The controller itself is unstable: it works in the loop only, and saturation would be fatal.");
+    if (!design.C.stable && !integratesOnly(design.C)) out.push("The controller itself is unstable: it works in the loop only, and saturation would be fatal.");
     if (margins?.Ms && margins.Ms > FRAGILE_MS) out.push(`Ms is ${formatNumber(margins.Ms)}: the poles are where you want them, yet a small error of the model would move them far. Try slower poles.`);
     if (design.condition > ILL_CONDITIONED) out.push("A pole and a zero of the plant lie close together, or the poles far apart: the equation is ill-conditioned.");
     if (design.approximation) out.push(`The poles are those of a Padé approximation of order ${design.approximation.order}; response, margins and verdict are of the exact dead time.`);
@@ -69,7 +72,7 @@ export function mount(host, bench) {
       valueTable("The controller", ["", ""], [
         ["Poles", rootsText(C.poles)],
         ["Zeros", rootsText(C.zeros)],
-        ["Stable by itself", h("span", {}, yesNo(C.stable, { no: C.integrators > 0 ? "no: it integrates" : "no" }))],
+        ["Stable by itself", integratesOnly(C) ? "but for its integrator" : h("span", {}, yesNo(C.stable))],
         ["Proper", C.relative_degree > 0 ? "strictly" : "yes"],
         ["Residual of the equation", formatNumber(design.residual, 2)],
         ["Error of the poles", formatNumber(design.pole_error, 2)],

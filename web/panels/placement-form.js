@@ -45,7 +45,7 @@ export function mount(host, bench) {
 
   host.append(
     h("section", { class: "design-card-form", "aria-label": "Plant" }, h("h2", {}, "Plant"), plant.root, h("div", { class: "design-presets", role: "group", "aria-label": "Examples" }, ...presets), message, dead),
-    h("section", { class: "design-card-form", "aria-label": "Controller" }, h("h2", {}, "The controller shall have"), integrator.root, scaled.root, structure),
+    h("section", { class: "design-card-form", "aria-label": "Wishes for the controller" }, h("h2", {}, "The controller shall have"), integrator.root, scaled.root, structure),
   );
 
   function show() {

@@ -13,6 +13,8 @@ export const DAMPINGS = [0.3, 0.5, 0.7, 0.9];
 /** Settling to two per cent takes four time constants. */
 const SETTLED = 4;
 const SETTLING_AT = [0.2, 0.55];
+/** Labels nearer to each other than this share of the plot would lie on one another. */
+const APART = 0.13;
 
 /**
  * Where a ray of this damping leaves the window, above the axis.
@@ -42,6 +44,9 @@ export function polePlane({ wanted, poles, zeros, timeUnit }, theme, held) {
   });
   const settling = [...new Set(SETTLING_AT.map((share) => round125(SETTLED / Math.max(-share * left, 1e-9))))].map((time) => ({ time, x: -SETTLED / time })).filter(({ x }) => x > left && x < 0);
 
+  const near = (/** @type {{x: number, y: number}} */ a, /** @type {{x: number, y: number}} */ b) => Math.abs(a.x - b.x) < APART * (ranges.xaxis[1] - left) && Math.abs(a.y - b.y) < APART * (ranges.yaxis[1] - ranges.yaxis[0]);
+  const labelled = ends.filter((end, i) => !ends.slice(0, i).some((other, j) => near(end, other) && !ends.slice(0, j).some((before) => near(other, before))));
+
   /** @param {string} name @param {Complex[]} points @param {object} marker @returns {Trace} */
   const dots = (name, points, marker) => ({ type: "scatter", mode: "markers", name, x: points.map(([x]) => x), y: points.map(([, y]) => y), marker, hovertemplate: `${name}<br>s = %{x:.4~g} %{y:+.4~g} j<extra></extra>` });
   /** @param {string} name @param {{x: (number | null)[], y: (number | null)[]}} points @returns {Trace} */
@@ -62,7 +67,7 @@ export function polePlane({ wanted, poles, zeros, timeUnit }, theme, held) {
       xaxis: axis(theme, "Re s", ranges.xaxis, { zerolinewidth: 1.5, zerolinecolor: theme.muted, nticks: 8 }),
       yaxis: axis(theme, "Im s", ranges.yaxis),
       annotations: [
-        ...ends.map(({ zeta, x, y }) => label({ x: 0.94 * x, y: 0.94 * y, text: `ζ ${zeta}` })),
+        ...labelled.map(({ zeta, x, y }) => label({ x: 0.94 * x, y: 0.94 * y, text: `ζ ${zeta}` })),
         ...settling.map(({ time, x }) => label({ x, y: 0, yref: "paper", yanchor: "bottom", text: `${formatShort(time)} ${escapePlotly(timeUnit)}` })),
       ],
       shapes: [{ type: "rect", layer: "below", xref: "x", yref: "paper", x0: 0, x1: far, y0: 0, y1: 1, fillcolor: theme.bad, opacity: 0.06, line: { width: 0 } }],

@@ -43,6 +43,8 @@ Name = Literal["smith", "PI", "PID"]
 NAMES: tuple[Name, ...] = ("smith", "PI", "PID")
 # Factors up to which single changes of gain and dead time are followed.
 FARTHEST = 10.0
+# Sums of dead time and slowest lag in which responses settle; what stands for the lag of an integrating model.
+SETTLED, INTEGRATING = 6.0, 4.0
 
 
 class MismatchFactors(Model):
@@ -214,6 +216,14 @@ def _nominal(name: Name, controller: PID | str, request: SmithRequest, model: Tr
     return request.Ms_limit
 
 
+def _horizon(model: TransferFunction) -> float:
+    """Time in which loops of this robustness come to rest [time]."""
+    slowest = max((1.0 / abs(p) for p in model.poles if p != 0), default=0.0)
+    if model.origin_order > 0:
+        slowest = max(slowest, INTEGRATING * model.theta)
+    return float(f"{SETTLED * (model.theta + slowest):.2g}") or plant_horizon(model)
+
+
 def _text(system: TransferFunction) -> dict[str, str]:
     latex = system.to_latex()
     return {"text": system.to_text(4), "latex": latex, "mathml": render_math(latex)}
@@ -249,7 +259,7 @@ def smith(request: Annotated[SmithRequest, Body(openapi_examples=EXAMPLES)]) -> 
         model,
         base,
         perturbed_plant(base, factors.K, factors.tau, factors.theta),
-        request.horizon or plant_horizon(model),
+        request.horizon or _horizon(model),
     )
     found = _contestants(request, model)
     reasons = {}

@@ -24,8 +24,9 @@ Structure = Literal["biproper", "strictly_proper"]
 ONE = TransferFunction()
 # Above this the answer of Sylvester's matrix is noise, whatever the refinement.
 LARGEST_CONDITION = 1e14
-# Poles chosen for the caller: damping of the first pair, how much faster than the plant, and than those given.
-DAMPING, QUICKER, SPREAD = 0.7, 2.0, 3.0
+# Poles chosen for the caller: damping of the first pair, how much faster it is than the plant and the others than it;
+# and how much faster than the fastest pole that was given.
+DAMPING, QUICKER, SPREAD, BESIDE = 0.7, 2.0, 3.0, 1.5
 
 
 @dataclass(frozen=True)
@@ -130,7 +131,7 @@ def completed_poles(plant: TransferFunction, given: ComplexArray, required: int)
         return np.zeros(0, dtype=complex)
     out: list[complex] = []
     if given.size:
-        pace = SPREAD * float(np.abs(given).max())
+        pace = BESIDE * float(np.abs(given).max())
     else:
         sizes = np.abs(plant.poles[plant.poles != 0])
         pace = QUICKER * float(np.exp(np.log(sizes).mean())) if sizes.size else 1.0
