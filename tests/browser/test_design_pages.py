@@ -48,7 +48,7 @@ def test_poles_are_moved_and_the_controller_follows(page: Page):
     expect(page.locator(".pole-entry")).to_have_count(3)
     link = controller.get_by_role("link", name="Open in the workbench")
     assert parse_qs(urlsplit(link.get_attribute("href") or "").query)["type"] == ["PID"]
-    expect(page).to_have_url(re.compile(r"poles=-2\.5,3\.1225;-3[\d.]+;-\d+&integrator=1"))
+    expect(page).to_have_url(re.compile(r"poles=-2\.5,3\.1225;-3[\d.]+;-[\d.]+&integrator=1"))
 
 
 @pytest.mark.allow_console(r"status of 422")
