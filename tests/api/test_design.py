@@ -44,6 +44,8 @@ def test_missing_poles_are_added_where_asked(post: Any) -> None:
         ({"plant": {"type": "expr", "text": "exp(-s)/(s+1)"}}, "plant"),
         ({"plant": {"type": "expr", "text": "(s+3)/((s+3)(s+1))"}}, "plant"),
         ({"D_text": "1/(s+1)"}, "D_text"),
+        ({"D_text": "(s+1)^2"}, "D_text"),
+        ({"D_text": None, "poles": [-1]}, "poles"),
         ({"D_text": None, "poles": [[-1, 2]]}, "poles.zeros"),
         ({"L_factor": [0]}, "L_factor"),
         ({"D_text": None}, ""),

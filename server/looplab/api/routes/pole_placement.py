@@ -16,7 +16,7 @@ from looplab.api.strict import StrictRoute
 from looplab.api.tuning_request import controller_answer
 from looplab.engine.design import PolePlacement, pole_placement, required_degree
 from looplab.engine.design.pole_placement import Structure, completed_poles
-from looplab.engine.errors import InvalidInput
+from looplab.engine.errors import EngineError, InvalidInput
 from looplab.engine.systems import TransferFunction, parse_transfer_function
 from looplab.engine.systems.polynomial import ComplexArray
 from looplab.labs.text import render_math
@@ -54,6 +54,11 @@ class PolePlacementRequest(Model):
         if given > 1 or (not given and not self.complete):
             raise ValueError("give one of poles, D or D_text, or complete: true to have them chosen")
         return self
+
+    @property
+    def field(self) -> str:
+        """How the request spells the wanted poles."""
+        return next((name for name in ("D", "D_text") if getattr(self, name) is not None), "poles")
 
     def wanted(self) -> ComplexArray:
         """Roots of D; raises EngineError naming the field."""
@@ -132,7 +137,12 @@ def place(request: Annotated[PolePlacementRequest, Body(openapi_examples=EXAMPLE
     padded = (request.pade_order or 0) if plant.theta else 0
     required = required_degree(plant, factor, request.structure) + 2 * padded
     added = completed_poles(plant, wanted, required) if request.complete else wanted[:0]
-    found = pole_placement(plant, np.concatenate([wanted, added]), factor, request.structure, request.pade_order)
+    try:
+        found = pole_placement(plant, np.concatenate([wanted, added]), factor, request.structure, request.pade_order)
+    except EngineError as error:
+        if error.field == "D":
+            error.field = request.field
+        raise
     reasons = dict(found.reasons)
     static = found.static_gain
     if static is None:

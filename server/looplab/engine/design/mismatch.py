@@ -12,14 +12,16 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from looplab.engine.errors import RuleNotApplicable
+from looplab.engine.errors import NoConvergence, RuleNotApplicable
 from looplab.engine.loop import PID
 from looplab.engine.systems.polynomial import ComplexArray, FloatArray
 from looplab.engine.systems.transfer_function import TransferFunction
 
 Axis = Literal["K", "tau", "theta"]
 POINTS_PER_DECADE, POINTS_PER_TURN = 50, 20
-LARGEST_TURN, ROUNDS, MOST_POINTS = 0.8, 30, 20_000
+LARGEST_TURN, ROUNDS, MOST_POINTS = 0.8, 30, 12_000
+# Values of W that are looked at in one go.
+BATCH = 250_000
 # |C P| below which W stays on the right side of the origin.
 QUIET = 0.2
 SMALLEST_GAIN = 0.05
@@ -85,6 +87,11 @@ class MismatchLoop:
         Returns
         -------
         ndarray, shape (N,)
+
+        Raises
+        ------
+        NoConvergence
+            More than 12 000 would be needed.
         """
         late = self.plant.theta * theta + (self.model.theta if self.model else 0.0)
         marks = [np.abs(r) for r in (self.C.zeros, self.C.poles)]
@@ -105,8 +112,14 @@ class MismatchLoop:
                 break
             high *= 1.5
         steps = int(np.log10(high / low) * POINTS_PER_DECADE) + 2
-        turns = int(min(high * late / (2 * np.pi) * POINTS_PER_TURN, MOST_POINTS))
-        return np.unique(np.concatenate([np.geomspace(low, high, steps), np.linspace(low, high, turns + 2)]))
+        turns = high * late / (2 * np.pi) * POINTS_PER_TURN
+        if not steps + turns < MOST_POINTS:
+            raise NoConvergence(
+                "the dead times turn the phase too often before the gain of the loop falls below 1",
+                field="model",
+                hint="give the model the further lag that a real plant has",
+            )
+        return np.unique(np.concatenate([np.geomspace(low, high, steps), np.linspace(low, high, int(turns) + 2)]))
 
     def characteristic(
         self, omega: FloatArray, K: FloatArray | float, tau: FloatArray | float, theta: FloatArray | float
@@ -139,6 +152,10 @@ class MismatchLoop:
         if not K.size:
             return np.zeros(0, dtype=int)
         grid = self.grid(float(K.max()), (float(tau.min()), float(tau.max())), float(theta.max()))
+        parts = [self._counted(grid, K[part], tau[part], theta[part]) for part in batches(K.size, grid.size)]
+        return np.concatenate(parts)
+
+    def _counted(self, grid: FloatArray, K: FloatArray, tau: FloatArray, theta: FloatArray) -> npt.NDArray[np.int_]:
         shape = (K.size, grid.size)
         each = [np.broadcast_to(v[:, None], shape).ravel() for v in (K, tau, theta)]
         value = self.characteristic(np.tile(grid, K.size), *each).reshape(shape)
@@ -165,6 +182,12 @@ class MismatchLoop:
             omega = np.insert(omega, coarse + 1, middle)
             value = np.insert(value, coarse + 1, self.characteristic(middle, K, tau, theta))
         return None
+
+
+def batches(rows: int, columns: int) -> list[slice]:
+    """Rows of a table in parts of a bounded size."""
+    step = max(1, BATCH // columns)
+    return [slice(start, start + step) for start in range(0, rows, step)]
 
 
 def _require_tame(system: TransferFunction, name: str, controller_degree: int) -> None:

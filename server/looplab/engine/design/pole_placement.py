@@ -228,9 +228,16 @@ def _pole_error(wanted: ComplexArray, found: ComplexArray) -> float:
 
 
 def _controller(found: Diophantine, factor: TransferFunction) -> TransferFunction:
-    L = TransferFunction.from_polynomials([1.0], found.L)
-    P = TransferFunction.from_polynomials(found.P, [1.0])
-    return TransferFunction(P.zeros, np.concatenate([L.poles, factor.zeros]), float(found.P[0] / found.L[0]))
+    try:
+        L = TransferFunction.from_polynomials([1.0], found.L)
+        P = TransferFunction.from_polynomials(found.P, [1.0])
+        return TransferFunction(P.zeros, np.concatenate([L.poles, factor.zeros]), float(found.P[0] / found.L[0]))
+    except InvalidInput as error:
+        raise InvalidInput(
+            f"the controller for these poles leaves double precision: {error.message}",
+            field="D",
+            hint="choose poles nearer to those of the plant",
+        ) from error
 
 
 def pole_placement(

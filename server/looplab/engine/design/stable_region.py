@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from looplab.engine.design.mismatch import Axis, MismatchLoop
+from looplab.engine.design.mismatch import Axis, MismatchLoop, batches
 from looplab.engine.frequency.bracketing import refine_brackets
 from looplab.engine.systems.polynomial import ComplexArray, FloatArray
 
@@ -76,6 +76,12 @@ class Crossings:
         return cls(at[order], change[order])
 
 
+def _columns(grid: FloatArray, first: FloatArray, second: FloatArray) -> list[FloatArray]:
+    """Frequency and two factors of each plant (row) at each frequency (column), in one line each."""
+    shape = (first.size, grid.size)
+    return [np.broadcast_to(v, shape).ravel() for v in (grid, first[:, None], second[:, None])]
+
+
 def gain_crossings(loop: MismatchLoop, tau: FloatArray, theta: FloatArray, highest: float) -> list[Crossings]:
     r"""Gain factors at which roots cross the imaginary axis, for each of some plants.
 
@@ -109,15 +115,16 @@ def gain_crossings(loop: MismatchLoop, tau: FloatArray, theta: FloatArray, highe
         out: ComplexArray = -loop.ahead(omega) / loop.rational(omega, tau)
         return out * np.exp(1j * omega * loop.plant.theta * theta)
 
-    shape = (tau.size, grid.size)
-    every = [np.broadcast_to(v, shape).ravel() for v in (grid, tau[:, None], theta[:, None])]
-    value = gain(*every).reshape(shape)
-    rises = np.signbit(value.imag).astype(int)
-    near = np.minimum(value.real[:, 1:], value.real[:, :-1]) < 2.0 * highest
-    row, at = np.nonzero((rises[:, 1:] != rises[:, :-1]) & near)
+    found = []
+    for part in batches(tau.size, grid.size):
+        value = gain(*_columns(grid, tau[part], theta[part])).reshape(-1, grid.size)
+        rises = np.signbit(value.imag).astype(int)
+        near = np.minimum(value.real[:, 1:], value.real[:, :-1]) < 2.0 * highest
+        row, at = np.nonzero((rises[:, 1:] != rises[:, :-1]) & near)
+        found.append((row + part.start, at, 2 * (rises[row, at] - rises[row, at + 1])))
+    row, at, change = (np.concatenate(parts) for parts in zip(*found, strict=True))
     omega = refine_brackets(lambda w: gain(w, tau[row], theta[row]).imag, grid[at], grid[at + 1])
     K = gain(omega, tau[row], theta[row]).real
-    change = 2 * (rises[row, at] - rises[row, at + 1])
     used = (K > 0) & (highest >= K)
     at_rest = np.zeros(0) if loop.origin else np.array([-1.0 / (loop.C * loop.plant).dc_gain])
     at_rest = at_rest[(at_rest > 0) & (at_rest <= highest)]
@@ -161,13 +168,15 @@ def dead_time_crossings(loop: MismatchLoop, K: FloatArray, tau: FloatArray, high
             out: FloatArray = np.log(K * np.abs(loop.rational(omega, tau)) / np.abs(loop.ahead(omega)))
             return out
 
-    shape = (K.size, grid.size)
-    every = [np.broadcast_to(v, shape).ravel() for v in (grid, K[:, None], tau[:, None])]
-    below = np.signbit(log_ratio(*every).reshape(shape)).astype(int)
-    row, at = np.nonzero(below[:, 1:] != below[:, :-1])
+    found = []
+    for part in batches(K.size, grid.size):
+        size = log_ratio(*_columns(grid, K[part], tau[part])).reshape(-1, grid.size)
+        below = np.signbit(size).astype(int)
+        row, at = np.nonzero(below[:, 1:] != below[:, :-1])
+        found.append((row + part.start, at, 2 * (below[row, at + 1] - below[row, at])))
+    row, at, change = (np.concatenate(parts) for parts in zip(*found, strict=True))
     omega = refine_brackets(lambda w: log_ratio(w, K[row], tau[row]), grid[at], grid[at + 1])
     angle = np.mod(np.angle(-K[row] * loop.rational(omega, tau[row]) / loop.ahead(omega)), 2.0 * np.pi)
-    change = 2 * (below[row, at + 1] - below[row, at])
     out = []
     for i in range(K.size):
         mine = np.flatnonzero(row == i)
