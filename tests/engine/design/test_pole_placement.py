@@ -148,6 +148,19 @@ def test_the_degree_that_fits_is_said():
         pole_placement(NOTES, np.array([-1.0, -2.0]), S)
 
 
+def test_nearly_cancelling_roots_and_many_equal_poles_are_placed_as_well_as_numbers_allow():
+    near = pole_placement(parse_transfer_function("(s+1.0000001)/((s+1)(s+2))"), np.array([-3.0, -4, -6]))
+    assert near.condition > 1e7
+    assert near.pole_error < 1e-6
+    equal = pole_placement(parse_transfer_function("1/(s+1)^3"), np.full(5, -2.0))
+    # Five equal roots answer a change of eps by eps^(1/5).
+    assert 1e-6 < equal.pole_error < 0.02
+    with pytest.raises(InvalidInput, match="too far apart"):
+        pole_placement(parse_transfer_function("1e-6/((1e6s+1)(1e-6s+1))"), np.array([-1e3, -1.0, -1.0]))
+    with pytest.raises(InvalidInput, match="mere gain"):
+        pole_placement(parse_transfer_function("5"), np.array([]))
+
+
 def test_a_dead_time_is_approximated_only_where_asked():
     plant = parse_transfer_function("exp(-0.3s)/(s+1)")
     with pytest.raises(InvalidInput, match="dead time") as caught:

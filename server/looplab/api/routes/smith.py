@@ -30,7 +30,7 @@ from looplab.engine.design import (
 )
 from looplab.engine.design.smith_tuning import nominal_peak
 from looplab.engine.design.stable_region import AXES
-from looplab.engine.errors import EngineError, RuleNotApplicable
+from looplab.engine.errors import EngineError, InvalidInput, RuleNotApplicable
 from looplab.engine.loop import PID
 from looplab.engine.systems import TransferFunction
 from looplab.engine.tuning import ComparedLoop, compare, optimal_tuning, perturbed_plant, plant_horizon
@@ -96,6 +96,8 @@ def _contestants(request: SmithRequest, model: TransferFunction) -> _Contestants
     if request.controller is not None:
         with located("controller"):
             C = request.controller.to_engine()
+            if not C.Kc:
+                raise InvalidInput("a gain of zero closes no loop", field="Kc")
         given: dict[str, Any] = {"how": "as given", "tau_c": None, "Ms": None, "on_limit": None}
         return _Contestants({"smith": C, **plain}, given)
     try:

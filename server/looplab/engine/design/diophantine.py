@@ -160,8 +160,16 @@ def solve_diophantine(A: FloatArray, B: FloatArray, D: FloatArray, scale: float)
     split = L_degree + 1
     for _ in range(REFINEMENTS):
         x = x + solve(exact_residual(a, x[:split], b, x[split:], d))
-    L, P = _cleaned(x[:split]), _cleaned(x[split:])
-    residual = float(np.abs(exact_residual(a, L, b, P, d)).max() / np.abs(d).max())
+
+    def residual_of(L: FloatArray, P: FloatArray) -> float:
+        return float(np.abs(exact_residual(a, L, b, P, d)).max() / np.abs(d).max())
+
+    # Only with a plant that passes jumps on can the first coefficient of L vanish.
+    given = (x[:split], x[split:])
+    clean = (_cleaned(given[0]) if b.size == a.size else given[0], _cleaned(given[1]))
+    residual, plain = residual_of(*clean), residual_of(*given)
+    # What looked like rounding was not, where coefficients are of very different sizes.
+    (L, P), residual = (clean, residual) if residual <= max(10.0 * plain, NEGLIGIBLE) else (given, plain)
     # Powers of the scale, undone one by one: sizes first, they are powers of two.
     back_L = L * (delta / alpha) * scale ** -np.arange(L.size - 1, -1, -1.0)
     back_P = P * (delta / beta) * scale ** -np.arange(P.size - 1, -1, -1.0)

@@ -17,6 +17,7 @@ from looplab.engine.loop import FeedbackLoop
 from looplab.engine.stability import Verdict, closed_loop_poles, closed_loop_verdict
 from looplab.engine.stability.closed_loop import verdict_from_poles
 from looplab.engine.stability.notions import pole_text
+from looplab.engine.stability.polish import polish_few
 from looplab.engine.systems.polynomial import ComplexArray, FloatArray, from_roots
 from looplab.engine.systems.transfer_function import MAX_ORDER, TransferFunction
 
@@ -24,6 +25,10 @@ Structure = Literal["biproper", "strictly_proper"]
 ONE = TransferFunction()
 # Above this the answer of Sylvester's matrix is noise, whatever the refinement.
 LARGEST_CONDITION = 1e14
+# Beyond this the coefficients, rounded to double precision, are of another loop.
+LARGEST_RESIDUAL = 1e-8
+# |ln(-L)| at a pole that was found.
+CONVERGED = 1e-6
 # Poles chosen for the caller: damping of the first pair, how much faster it is than the plant and the others than it;
 # and how much faster than the fastest pole that was given.
 DAMPING, QUICKER, SPREAD, BESIDE = 0.7, 2.0, 3.0, 1.5
@@ -92,6 +97,8 @@ def required_degree(
 
     .. math:: n_d = 2n + f - 1 \text{ (biproper)}, \qquad n_d = 2n + f \text{ (strictly proper)}
 
+    and never fewer than the n + f that are there.
+
     Parameters
     ----------
     plant : TransferFunction
@@ -108,7 +115,8 @@ def required_degree(
     ----------
     .. [1] G. C. Goodwin, S. F. Graebe, M. E. Salgado, Control System Design, Prentice Hall 2001, lemma 7.1, sec. 7.3.
     """
-    return 2 * plant.order + L_factor.zeros.size - (1 if structure == "biproper" else 0)
+    n, f = plant.order, int(L_factor.zeros.size)
+    return max(2 * n + f - (1 if structure == "biproper" else 0), n + f)
 
 
 def completed_poles(plant: TransferFunction, given: ComplexArray, required: int) -> ComplexArray:
@@ -227,6 +235,18 @@ def _pole_error(wanted: ComplexArray, found: ComplexArray) -> float:
     return float(apart[linear_sum_assignment(apart)].max())
 
 
+def _placed(loop: FeedbackLoop, wanted: ComplexArray) -> ComplexArray:
+    """Poles of the loop: next to the wanted ones, where each is found there; else from the state matrix.
+
+    Where a pole and a zero of the plant nearly cancel, eigenvalues lose all their digits.
+    """
+    found = polish_few(loop.open_loop, wanted, steps=4)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        missed = np.abs(np.log(-loop.open_loop(found)))
+    single = np.unique(np.round(wanted, 12)).size == wanted.size
+    return found if single and (missed < CONVERGED).all() else closed_loop_poles(loop).poles
+
+
 def _controller(found: Diophantine, factor: TransferFunction) -> TransferFunction:
     try:
         L = TransferFunction.from_polynomials([1.0], found.L)
@@ -285,6 +305,10 @@ def pole_placement(
     plant = _without_dead_time(given, pade_order)
     if not plant.gain:
         raise InvalidInput("the plant is zero: no controller acts on it", field="plant")
+    if not plant.order + L_factor.zeros.size:
+        raise InvalidInput(
+            "the plant is a mere gain: there is no pole to place", field="plant", hint="let the controller integrate"
+        )
     wanted = TransferFunction(zeros=poles).zeros
     f = L_factor.zeros.size
     _check_degree(wanted.size, required_degree(plant, L_factor, structure), plant, f, structure)
@@ -295,7 +319,7 @@ def pole_placement(
     scale = _scale(plant.poles, plant.zeros, wanted)
     D = from_roots(wanted)
     found = solve_diophantine(from_roots(all_poles), plant.num, D, scale)
-    if not found.condition < LARGEST_CONDITION:
+    if not (found.condition < LARGEST_CONDITION and found.residual < LARGEST_RESIDUAL):
         raise _refuse_condition(plant, all_poles, found.condition)
     if found.L.size - 1 < wanted.size - all_poles.size:
         raise ImproperSystem(
@@ -303,7 +327,7 @@ def pole_placement(
         )
     C = _controller(found, L_factor)
     loop = FeedbackLoop(plant, C)
-    placed = closed_loop_poles(loop).poles
+    placed = _placed(loop, wanted)
     reasons: dict[str, str] = {}
     static = _static_gain(plant, C, reasons)
     return PolePlacement(
