@@ -20,6 +20,7 @@ ROUTES = [
     *("/tune/optimal", "/tune/trade-off", "/compare", "/gain-map", "/controller-forms"),
     *("/mimo/rga", "/mimo/simulate", "/mimo/interaction", "/mimo/decoupler", "/mimo/tune"),
     *("/state-feedback", "/state-feedback/simulate", "/state-feedback/region"),
+    *("/pole-placement", "/smith"),
 ]
 RAW = {
     "empty": b"",

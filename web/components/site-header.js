@@ -9,6 +9,7 @@ const PAGES = [
   { id: "workbench", href: "/workbench", label: "Workbench" },
   { id: "plants", href: "/plants", label: "Plants" },
   { id: "experiments", href: "/experiments", label: "Experiments" },
+  { id: "design", href: "/design", label: "Design" },
   { id: "labs", href: "/labs", label: "Labs" },
 ];
 
@@ -35,19 +36,20 @@ export class SiteHeader extends HTMLElement {
       show();
     });
     show();
-    const pages = h("nav", { "aria-label": "Pages" }, ...PAGES.map(({ id, href, label }) => h("a", { href, "aria-current": id === current ? "page" : null }, label)));
+    const nav = h("nav", { "aria-label": "Pages" }, ...PAGES.map(({ id, href, label }) => h("a", { href, "aria-current": id === current ? "page" : null }, label)));
     this.append(
       h("a", { class: "skip-link", href: "#main" }, "Skip to content"),
       h(
         "header",
         { class: "site-header" },
         h("a", { class: "brand", href: "/", "aria-label": "looplab, home" }, brandMark(), h("span", {}, "looplab")),
-        pages,
+        nav,
         theme,
       ),
     );
-    const here = pages.querySelector("[aria-current]");
-    if (here instanceof HTMLElement) pages.scrollLeft = here.offsetLeft + here.offsetWidth - pages.offsetLeft - pages.clientWidth;
+    // On a narrow screen the page that is shown may be out of sight.
+    const here = /** @type {HTMLElement | null} */ (nav.querySelector("[aria-current]"));
+    if (here) nav.scrollLeft = here.offsetLeft + here.offsetWidth - nav.offsetLeft - nav.clientWidth;
   }
 }
 

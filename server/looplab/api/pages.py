@@ -25,6 +25,9 @@ PAGES = {
     "/experiments": "experiments.html",
     "/mimo": "mimo.html",
     "/state-feedback": "state-feedback.html",
+    "/design": "design.html",
+    "/pole-placement": "pole-placement.html",
+    "/smith-predictor": "smith-predictor.html",
     "/api": "api.html",
 }
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-import numpy as np
 from fastapi import APIRouter, Body
 from pydantic import Field, model_validator
 from starlette.responses import Response
@@ -13,17 +12,16 @@ from starlette.responses import Response
 from looplab.api.answers.compare import CompareAnswer
 from looplab.api.docs import ERRORS
 from looplab.api.encode import Arrays, json_response
+from looplab.api.judged import judged_answer
 from looplab.api.strict import StrictRoute
 from looplab.api.tuning_request import RuleOptions, controller_answer
 from looplab.engine.errors import EngineError
 from looplab.engine.loop import PID
-from looplab.engine.loop import Response as StepCurve
 from looplab.engine.systems import TransferFunction
 from looplab.engine.tuning import (
     RULES,
     Band,
     Case,
-    ComparedLoop,
     KnownPlant,
     RuleName,
     TypeName,
@@ -36,9 +34,6 @@ from looplab.schemas import AnyPID, Model, System, located
 router = APIRouter(tags=["tuning"], route_class=StrictRoute)
 
 MOST, MOST_WITH_SPREAD = 12, 4
-MARGINS = ("GM", "GM_dB", "PM_deg", "omega_c", "delay_margin", "Ms", "Mt")
-SETPOINT = ("overshoot_pct", "t_rise", "t_settle", "decay_ratio", "offset", "IAE", "ISE", "ITAE", "TV")
-LOAD = ("peak", "t_settle", "IAE", "ISE", "ITAE", "TV")
 
 
 class Entry(Model):
@@ -106,28 +101,6 @@ def _row(entry: Entry, index: int, known: KnownPlant, request: CompareRequest) -
     return _Row(head, PID(found.Kc, found.tau_I, found.tau_D, found.alpha))
 
 
-def _curve(response: StepCurve) -> dict[str, Any]:
-    return {
-        # Columns of one array: the encoder wants them in one piece.
-        **{name: np.ascontiguousarray(getattr(response, name)) for name in ("t", "y", "u")},
-        "truncated_at": response.truncated_at,
-        "truncated_reason": response.truncated_reason,
-    }
-
-
-def _judged(loop: ComparedLoop) -> dict[str, Any]:
-    margins = {name: getattr(loop.margins, name) for name in MARGINS}
-    return {
-        "closed_loop_stable": loop.margins.closed_loop_stable,
-        "margins": margins | {"reasons": {k: v for k, v in loop.margins.reasons.items() if k in MARGINS}},
-        "setpoint": {n: getattr(loop.setpoint, n) for n in SETPOINT}
-        | {"reasons": {k: v for k, v in loop.setpoint.reasons.items() if k in SETPOINT}},
-        "load": {n: getattr(loop.load, n) for n in LOAD}
-        | {"reasons": {k: v for k, v in loop.load.reasons.items() if k in LOAD}},
-        "responses": {"setpoint": _curve(loop.steps.setpoint), "load": _curve(loop.steps.load)},
-    }
-
-
 def _case(case: Case | None) -> dict[str, Any] | None:
     if case is None:
         return None
@@ -170,7 +143,7 @@ def _spread(plant: TransferFunction, controller: PID, request: CompareRequest, h
 def _simulated(true: TransferFunction, controller: PID, request: CompareRequest, horizon: float) -> dict[str, Any]:
     """A row's loop on the true plant; raises EngineError where the two make no loop that can be computed."""
     [loop] = compare(true, [controller], horizon, request.points)
-    answer = _judged(loop) | {"controller": controller_answer(controller)}
+    answer = judged_answer(loop) | {"controller": controller_answer(controller)}
     if request.spread_pct is not None:
         answer["sensitivity"] = _spread(true, controller, request, horizon)
     return answer
