@@ -18,6 +18,7 @@ ROUTES = [
     *("/stability", "/response", "/state-space", CHECK, "/labs/validate"),
     *("/plants/cstr/simulate", "/models/simulate", "/models/validate", "/plants/cstr/control", "/models/control"),
     *("/tune/optimal", "/tune/trade-off", "/compare", "/gain-map", "/controller-forms"),
+    *("/limits", "/bode-integral", "/spectrum"),
 ]
 RAW = {
     "empty": b"",

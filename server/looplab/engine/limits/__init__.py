@@ -9,7 +9,14 @@ from looplab.engine.limits.mismatch import Mismatch, Spread, mismatch, multiplic
 from looplab.engine.limits.passed import load_left, noise_passed
 from looplab.engine.limits.roots import pole_bound, zero_bound
 from looplab.engine.limits.window import Demands, Limit, Window, bandwidth_window
-from looplab.engine.limits.zeros import StepShape, ZeroEffect, overshoot_bound, step_shape, undershoot_bound
+from looplab.engine.limits.zeros import (
+    StepShape,
+    ZeroEffect,
+    loop_step_shape,
+    overshoot_bound,
+    step_shape,
+    undershoot_bound,
+)
 
 __all__ = [
     "ActuatorDemand",
@@ -34,6 +41,7 @@ __all__ = [
     "interpolation_constraints",
     "lemma_integrals",
     "load_left",
+    "loop_step_shape",
     "mismatch",
     "multiplicative_weight",
     "noise_passed",

@@ -53,7 +53,7 @@ class BodeIntegral:
     unstable_poles : ndarray of complex
         Those of L [rad/time].
     omega, ln_S : ndarray, shape (n,)
-        The curve over linear omega, from 0 on [rad/time], [-]; -inf where S is zero.
+        The curve over linear omega, from 0 on, without the points at which S is zero [rad/time], [-].
     reason : str or None
     """
 
@@ -241,4 +241,6 @@ def _curve(L: TransferFunction) -> tuple[FloatArray, FloatArray]:
     end = 5.0 * max(marks) if marks else float(np.sqrt(default_grid(L)[0] * default_grid(L)[-1]))
     grid = default_grid(L)
     omega = np.unique(np.concatenate([np.linspace(0.0, end, PLOT_POINTS), grid[grid < end]]))
-    return omega, log_sensitivity(L, omega)
+    ln_S = log_sensitivity(L, omega)
+    shown = np.isfinite(ln_S)
+    return omega[shown], ln_S[shown]

@@ -13,13 +13,13 @@ import numpy.typing as npt
 
 from looplab.engine.errors import InvalidInput
 from looplab.engine.limits.interpolation import right_half_plane
+from looplab.engine.limits.measured import measured_loop
 from looplab.engine.loop.dead_time import delayed_response
 from looplab.engine.loop.delay_free import delay_free_response
 from looplab.engine.loop.feedback_loop import FeedbackLoop
 from looplab.engine.loop.step_response import SHORTEST_DEAD_TIME, LoopEquations, loop_equations
 from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.polynomial import ComplexArray
-from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -139,11 +139,10 @@ def lemma_integrals(loop: FeedbackLoop) -> tuple[LemmaIntegral, ...]:
     .. [1] G. C. Goodwin, S. F. Graebe, M. E. Salgado, Control System Design, Prentice Hall 2001, lemmas 8.3 and 8.4.
     """
     L, _ = split_hidden_modes(loop.open_loop)
-    plant = TransferFunction(loop.path.zeros, loop.path.poles, loop.path.gain, loop.theta)
-    alone = FeedbackLoop(plant, loop.C.without_dead_time())
+    alone = measured_loop(loop)
     out: list[LemmaIntegral] = []
     for kind, roots in (("zero", L.zeros), ("pole", L.poles)):
-        own = plant.zeros if kind == "zero" else plant.poles
+        own = alone.plant.zeros if kind == "zero" else alone.plant.poles
         right = right_half_plane(roots)
         for c in sorted(set(right.real[right.imag == 0].tolist())):
             (y_r, y_d), (e_r, _) = weighted_integrals(alone, c).tolist()

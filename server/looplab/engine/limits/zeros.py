@@ -10,8 +10,14 @@ import numpy.typing as npt
 
 from looplab.engine.errors import InvalidInput
 from looplab.engine.limits.interpolation import right_half_plane
+from looplab.engine.limits.measured import measured_loop
+from looplab.engine.loop.feedback_loop import FeedbackLoop
 from looplab.engine.loop.hermite import HermiteCurves
-from looplab.engine.loop.step_response import Response
+from looplab.engine.loop.metrics import default_horizon
+from looplab.engine.loop.step_response import Response, closed_loop_step
+from looplab.engine.stability.closed_loop import closed_loop_poles
+from looplab.engine.systems.hidden_modes import split_hidden_modes
+from looplab.engine.systems.transfer_function import TransferFunction
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -20,6 +26,9 @@ BAND = 0.02
 ROUNDING = 1e-9
 # Farther than this the exponential leaves double precision, and the bound is nothing.
 LARGEST_EXPONENT = 700.0
+POINTS = 1500
+# A loop that has not settled is given twice the time, so often.
+LONGER = 5
 
 
 def undershoot_bound(c: float, t_settle: float, band: float = BAND) -> float:
@@ -180,3 +189,29 @@ def step_shape(response: Response, zeros: ComplexArray, slowest: float) -> StepS
         for c in sorted(set(left.real.tolist()), reverse=True):
             effects.append(ZeroEffect(c, "overshoot", 100.0 * overshoot_bound(c, t_settle, slowest, residue)))
     return StepShape(t_settle, under, over, at if under else None, starts_up, tuple(effects))
+
+
+def loop_step_shape(loop: FeedbackLoop) -> StepShape:
+    """step_shape of y after a setpoint step, with the zeros of T.
+
+    Parameters
+    ----------
+    loop : FeedbackLoop
+        Stable. Actuator, plant and sensor count as one plant, and the setpoint weight is left out.
+
+    Returns
+    -------
+    StepShape
+        Over a time in which the loop settles, if it does within 32 times the usual horizon.
+    """
+    alone = measured_loop(loop)
+    L, _ = split_hidden_modes(alone.open_loop)
+    poles = closed_loop_poles(FeedbackLoop(L, TransferFunction([], [], 1.0))).poles
+    slowest, horizon = float(-poles.real.max(initial=-np.inf)), default_horizon(loop)
+    shape = step_shape(closed_loop_step(alone, horizon, POINTS).setpoint, L.zeros, slowest)
+    for _ in range(LONGER):
+        if shape.t_settle is not None or shape.starts_up is None:
+            break
+        horizon *= 2.0
+        shape = step_shape(closed_loop_step(alone, horizon, POINTS).setpoint, L.zeros, slowest)
+    return shape
