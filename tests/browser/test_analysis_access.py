@@ -7,7 +7,10 @@ from playwright.sync_api import Page, expect
 
 from workbench import open_analyses, open_workbench, settled, violations
 
-ALL = ("response", "laplace", "routh", "stability", "state_space", "low_order", "compare", "gain_map")
+ALL = (
+    *("response", "laplace", "routh", "stability", "state_space", "low_order", "compare", "gain_map"),
+    *("limits", "bode_integral", "spectrum"),
+)
 FULL = (
     "response.sum=superposition&response.input=sampled&response.y=1&laplace.a=1,3,2&laplace.initial=1,0"
     "&compare.spread_pct=20"

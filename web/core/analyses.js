@@ -3,7 +3,9 @@
 /** @import {AnalysesView, CompareView, ControllerType, ResponseView} from "./types.js" */
 
 import { INPUTS, inputFromQuery, inputToQuery, startingInput, TRANSFORMS } from "./inputs.js";
+import { limitsFromQuery, limitsToQuery, startingLimits } from "./limits.js";
 import { listText, parseList } from "./lists.js";
+import { spectrumFromQuery, spectrumToQuery, startingSpectrum } from "./spectrum.js";
 
 const SUBJECTS = new Set(["plant", "open_loop", "closed_loop"]);
 const SUMS = new Set(["superposition", "convolution"]);
@@ -24,6 +26,8 @@ export function startingAnalyses() {
     cancel_tolerance: 1e-8,
     compare: { rules: ["ziegler_nichols", "amigo", "simc"].map((rule) => ({ rule, type: "PI" })), spread_pct: null, true_plant: "" },
     Ms_limit: 1.6,
+    limits: startingLimits(),
+    spectrum: startingSpectrum(),
   };
 }
 
@@ -33,7 +37,7 @@ function same(a, b) {
 }
 
 /** Only what is not as it starts. @param {URLSearchParams} query @param {AnalysesView} analyses */
-export function analysesToQuery(query, { response, laplace, polynomial, model_type, cancel_tolerance, compare, Ms_limit }) {
+export function analysesToQuery(query, { response, laplace, polynomial, model_type, cancel_tolerance, compare, Ms_limit, limits, spectrum }) {
   const start = startingAnalyses();
   if (response.of !== start.response.of) query.set("response.of", response.of);
   if (!same(response.input, start.response.input)) inputToQuery(query, "response", response.input);
@@ -51,6 +55,8 @@ export function analysesToQuery(query, { response, laplace, polynomial, model_ty
   if (compare.spread_pct !== null) query.set("compare.spread_pct", String(compare.spread_pct));
   if (compare.true_plant !== "") query.set("compare.true_plant", compare.true_plant);
   if (Ms_limit !== start.Ms_limit) query.set("Ms_limit", String(Ms_limit));
+  limitsToQuery(query, limits);
+  spectrumToQuery(query, spectrum);
 }
 
 /** @param {string} text @returns {CompareView["rules"]} */
@@ -100,5 +106,7 @@ export function analysesFromQuery(query) {
       true_plant: query.get("compare.true_plant")?.slice(0, 500) ?? "",
     },
     Ms_limit: within(limit, MS_LIMIT) ? (limit ?? start.Ms_limit) : start.Ms_limit,
+    limits: limitsFromQuery(query),
+    spectrum: spectrumFromQuery(query),
   };
 }

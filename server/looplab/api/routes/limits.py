@@ -127,8 +127,9 @@ def _window_words(found: Window) -> str:
     if low is None and high is None:
         return "nothing here limits the bandwidth"
     if low is None:
-        return f"ω_c should stay below {high:.4g}"
-    return f"ω_c should be above {low:.4g}" if high is None else f"ω_c should lie between {low:.4g} and {high:.4g}"
+        return f"the crossover ωc should stay below {high:.4g}"
+    where = f"be above {low:.4g}" if high is None else f"lie between {low:.4g} and {high:.4g}"
+    return f"the crossover ωc should {where}"
 
 
 def _curves(loop: FeedbackLoop, found: Mismatch) -> dict[str, Any]:
@@ -226,9 +227,9 @@ def limits(request: Annotated[LimitsRequest, Body(openapi_examples=EXAMPLES)]) -
 
 
 HOW = {
-    "origin": "in closed form, from L near 0",
-    "middle": "by Gauss's rule",
-    "tail": "from L at high frequencies",
+    "origin": "formula for L near 0",
+    "middle": "Gauss's rule",
+    "tail": "L beyond its corners",
 }
 
 

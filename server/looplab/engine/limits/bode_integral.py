@@ -27,6 +27,8 @@ BEYOND, SMALL = 4.0, 0.5
 # exp(-45) is below rounding.
 DECAY = 45.0
 PLOT_POINTS = 400
+# A peak of S below this is hardly seen.
+SEEN = 1.05
 
 
 @dataclass(frozen=True)
@@ -143,7 +145,8 @@ def bode_integral(loop: FeedbackLoop) -> BodeIntegral:
     k = L.gain if L.relative_degree == 1 else 0.0
     theorem = float(np.pi * unstable.real.sum()) - (0.0 if L.theta else 0.5 * np.pi * k)
     low, origin = _origin(L)
-    high = max(_beyond_corners(L), 2.0 * low)
+    # What is drawn, and whose areas are told, lies below the tail.
+    high = max(_beyond_corners(L), float(omega[-1]), 2.0 * low)
     edges = _edges(L, low, high)
 
     def over_log(x: FloatArray) -> FloatArray:
@@ -232,13 +235,14 @@ def _tail(L: TransferFunction, high: float, tolerance: float) -> tuple[float, fl
 
 
 def _curve(L: TransferFunction) -> tuple[FloatArray, FloatArray]:
-    """ln|S| over a linear axis that shows where it is large: to five times the last of its marks."""
+    """ln|S| over a linear axis that shows where it is large: to four times the last of its marks."""
     if not L.gain:
         omega = np.linspace(0.0, 1.0, 2)
         return omega, np.zeros(2)
     found = margins(L)
-    marks = [w for w in (found.omega_Ms, found.omega_c, found.omega_180) if w]
-    end = 5.0 * max(marks) if marks else float(np.sqrt(default_grid(L)[0] * default_grid(L)[-1]))
+    summit = found.omega_Ms if (found.Ms or 1.0) > SEEN else None
+    marks = [w for w in (summit, found.omega_c) if w]
+    end = 4.0 * max(marks) if marks else float(np.sqrt(default_grid(L)[0] * default_grid(L)[-1]))
     grid = default_grid(L)
     omega = np.unique(np.concatenate([np.linspace(0.0, end, PLOT_POINTS), grid[grid < end]]))
     ln_S = log_sensitivity(L, omega)

@@ -17,7 +17,7 @@ from looplab.engine.tuning.sensitivity import LARGEST_SPREAD, perturbed_plant
 FloatArray = npt.NDArray[np.float64]
 
 TAU_FACTORS = 33
-CURVE_POINTS = 200
+CURVE_POINTS = 300
 
 
 @dataclass(frozen=True)
@@ -146,7 +146,7 @@ def mismatch(loop: FeedbackLoop, spread: Spread) -> Mismatch:
 
     grid = default_grid(L)
     peak, omega_peak = highest(log_product, widened(grid))
-    omega = np.geomspace(grid[0], grid[-1], CURVE_POINTS)
+    omega = np.geomspace(0.1 * grid[0], 10.0 * grid[-1], CURVE_POINTS)
     safe = peak < 1.0
     return Mismatch(
         first_rise(log_weight, widened(default_grid(plant)), 0.0), peak, omega_peak, safe,

@@ -151,7 +151,7 @@ def _noise(demands: Demands) -> Limit:
         return Limit("noise", "upper", None, "say from which frequency on the sensor is noisy")
     omega = demands.noise_gain * demands.noise_omega
     share = _text(100.0 * demands.noise_gain)
-    why = f"of the noise from {_text(demands.noise_omega)} on {share} % may pass, and |T| falls about as ω_c/ω"
+    why = f"of the noise from {_text(demands.noise_omega)} on {share} % may pass, and |T| falls about as ωc/ω"
     return Limit("noise", "upper", omega, why)
 
 
@@ -163,7 +163,7 @@ def _mismatch(plant: TransferFunction, spread: Spread) -> Limit:
     omega = first_rise(log_weight, widened(default_grid(plant)), 0.0)
     if omega is None:
         return Limit("mismatch", "upper", None, "the error of the model stays below the model itself")
-    return Limit("mismatch", "upper", omega, "from there on the model may be wrong by as much as it is: |G_Δ| ≥ 1")
+    return Limit("mismatch", "upper", omega, "from there on the model may be wrong by as much as it is: |GΔ| ≥ 1")
 
 
 def _load(path: TransferFunction, load_error: float | None) -> Limit:
