@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -63,6 +64,14 @@ class Mismatch:
     T: FloatArray
 
 
+@lru_cache(maxsize=32)
+def _other_time_constants(plant: TransferFunction, tau_pct: float) -> tuple[TransferFunction, ...]:
+    """The plant without its dead time, its time constants within -tau_pct to +tau_pct per cent."""
+    rational, q = plant.without_dead_time(), 0.01 * tau_pct
+    factors = np.geomspace(1.0 - q, 1.0 + q, TAU_FACTORS).tolist() if q else [1.0]
+    return tuple(perturbed_plant(rational, 1.0, factor, 1.0) for factor in factors)
+
+
 def multiplicative_weight(plant: TransferFunction, spread: Spread, omega: FloatArray) -> FloatArray:
     r"""Largest relative model error over all plants whose gain, time constants and dead time lie within the spread.
 
@@ -89,21 +98,48 @@ def multiplicative_weight(plant: TransferFunction, spread: Spread, omega: FloatA
     ----------
     .. [1] S. Skogestad, I. Postlethwaite, Multivariable Feedback Control, 2nd ed., Wiley 2005, sec. 7.4.
     """
-    p, q, d = (0.01 * value for value in (spread.K_pct, spread.tau_pct, spread.theta_pct))
-    rational = plant.without_dead_time()
-    own = rational.response(omega)
-    reach = d * plant.theta * omega
+    p = 0.01 * spread.K_pct
+    own = plant.without_dead_time().response(omega)
+    reach = 0.01 * spread.theta_pct * plant.theta * omega
     worst = np.zeros(omega.shape)
-    factors = np.geomspace(1.0 - q, 1.0 + q, TAU_FACTORS) if q else np.ones(1)
-    for factor in factors:
+    for other in _other_time_constants(plant, spread.tau_pct):
         with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = perturbed_plant(rational, 1.0, float(factor), 1.0).response(omega) / own
+            ratio = other.response(omega) / own
         # The dead time turns the error by up to ``reach`` either way; half a turn is the worst.
         angle = np.minimum(np.abs(np.angle(ratio)) + reach, np.pi)
         turned = np.abs(ratio) * np.exp(1j * angle)
         for k in (1.0 - p, 1.0 + p):
             worst = np.fmax(worst, np.abs(k * turned - 1.0))
     return worst
+
+
+def log_weight(plant: TransferFunction, spread: Spread, omega: FloatArray) -> FloatArray:
+    """ln of multiplicative_weight; -inf where there is no error."""
+    with np.errstate(divide="ignore"):
+        return np.log(multiplicative_weight(plant, spread, omega))
+
+
+@lru_cache(maxsize=32)
+def full_error(plant: TransferFunction, spread: Spread) -> float | None:
+    r"""Where the model error first reaches the size of the model itself.
+
+    .. math:: w(\omega_\Delta) = 1
+
+    Parameters
+    ----------
+    plant : TransferFunction
+    spread : Spread
+
+    Returns
+    -------
+    float or None
+        [rad/time]; None where it never does.
+
+    References
+    ----------
+    .. [1] S. Skogestad, I. Postlethwaite, Multivariable Feedback Control, 2nd ed., Wiley 2005, sec. 7.4.
+    """
+    return first_rise(lambda omega: log_weight(plant, spread, omega), widened(default_grid(plant)), 0.0)
 
 
 def mismatch(loop: FeedbackLoop, spread: Spread) -> Mismatch:
@@ -136,19 +172,15 @@ def mismatch(loop: FeedbackLoop, spread: Spread) -> Mismatch:
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(np.isfinite(value), np.abs(value / (1.0 + value)), 1.0)
 
-    def log_weight(omega: FloatArray) -> FloatArray:
-        with np.errstate(divide="ignore"):
-            return np.log(multiplicative_weight(plant, spread, omega))
-
     def log_product(omega: FloatArray) -> FloatArray:
         with np.errstate(divide="ignore"):
-            return log_weight(omega) + np.log(size_of_T(omega))
+            return log_weight(plant, spread, omega) + np.log(size_of_T(omega))
 
     grid = default_grid(L)
     peak, omega_peak = highest(log_product, widened(grid))
     omega = np.geomspace(0.1 * grid[0], 10.0 * grid[-1], CURVE_POINTS)
     safe = peak < 1.0
     return Mismatch(
-        first_rise(log_weight, widened(default_grid(plant)), 0.0), peak, omega_peak, safe,
+        full_error(plant, spread), peak, omega_peak, safe,
         1.0 / (1.0 - peak) if safe else None, omega, multiplicative_weight(plant, spread, omega), size_of_T(omega),
     )  # fmt: skip

@@ -11,9 +11,9 @@ import numpy.typing as npt
 from looplab.engine.errors import InvalidInput
 from looplab.engine.frequency.response import default_grid, log_magnitude
 from looplab.engine.limits.delay import delay_bound
-from looplab.engine.limits.frequency_search import first_rise, last_fall, widened
+from looplab.engine.limits.frequency_search import last_fall, widened
 from looplab.engine.limits.interpolation import right_half_plane
-from looplab.engine.limits.mismatch import Spread, multiplicative_weight
+from looplab.engine.limits.mismatch import Spread, full_error
 from looplab.engine.limits.roots import pole_bound, zero_bound
 from looplab.engine.loop.feedback_loop import FeedbackLoop
 from looplab.engine.stability.notions import pole_text
@@ -156,11 +156,7 @@ def _noise(demands: Demands) -> Limit:
 
 
 def _mismatch(plant: TransferFunction, spread: Spread) -> Limit:
-    def log_weight(omega: FloatArray) -> FloatArray:
-        with np.errstate(divide="ignore"):
-            return np.log(multiplicative_weight(plant, spread, omega))
-
-    omega = first_rise(log_weight, widened(default_grid(plant)), 0.0)
+    omega = full_error(plant, spread)
     if omega is None:
         return Limit("mismatch", "upper", None, "the error of the model stays below the model itself")
     return Limit("mismatch", "upper", omega, "from there on the model may be wrong by as much as it is: |GΔ| ≥ 1")
