@@ -42,6 +42,7 @@ def test_lemmas_and_constraints_are_listed(page: Page):
     expect(rows).to_have_count(3)
     expect(rows.nth(1).locator("td")).to_have_text(["setpoint", "1", "1"])
     expect(page.get_by_role("table", name=re.compile("^S and T"))).to_contain_text("zero 1")
+    expect(page.locator("#panel-limits")).to_contain_text("It first moves the wrong way.")
 
 
 def test_bodes_areas(page: Page):

@@ -192,6 +192,8 @@
 /** @typedef {{value: number, omega: number | null}} PeakAnswer */
 /** @typedef {{omega: number | null, reason: string | null}} BandwidthAnswer */
 
+/** @typedef {{t_settle: number | null, undershoot_pct: number | null, overshoot_pct: number | null, t_undershoot: number | null, starts_up: boolean | null, effects: {c: number, effect: "undershoot" | "overshoot", bound_pct: number}[]}} StepShape */
+
 /**
  * @typedef {object} LimitsAnswer
  * @property {boolean} closed_loop_stable
@@ -206,7 +208,8 @@
  * @property {{Ms: number | null, Mt: number | null, Ms_bound: number, Mt_bound: number}} peaks
  * @property {{root: Complex, kind: "zero" | "pole", S: Complex, T: Complex, peak_bound: number}[] | null} constraints
  * @property {{root: number, kind: "zero" | "pole", signal: "y" | "e", step: "setpoint" | "load", value: number, theorem: number}[] | null} integrals
- * @property {{t_settle: number | null, undershoot_pct: number | null, overshoot_pct: number | null, t_undershoot: number | null, starts_up: boolean | null, effects: {c: number, effect: "undershoot" | "overshoot", bound_pct: number}[]} | null} step
+ * @property {StepShape | null} step
+ * @property {StepShape} plant_step
  * @property {{omega: Numbers, S: Numbers, T: Numbers, model_error: Numbers, ideal_S: Numbers | null}} curves
  * @property {Reasons} reasons
  */

@@ -1,6 +1,6 @@
 /** Which limits bind for this plant, what bandwidth they leave, and what the loop makes of it. */
 
-/** @import {LimitsAnswer} from "../core/analysis-types.js" */
+/** @import {LimitsAnswer, StepShape} from "../core/analysis-types.js" */
 /** @import {Api} from "../core/api.js" */
 /** @import {Store} from "../core/store.js" */
 /** @import {LimitsView, Table} from "../core/types.js" */
@@ -53,7 +53,7 @@ export function mount(host, store, api) {
 
   function render() {
     const answer = /** @type {LimitsAnswer} */ (analysis.answer);
-    words.replaceChildren(verdict(answer, rate), ...[listed(answer, rate), costs(answer, unit), corners(answer)].filter((node) => node !== null));
+    words.replaceChildren(verdict(answer, rate), ...[listed(answer, rate), costs(answer, unit), alone(answer, unit), corners(answer)].filter((node) => node !== null));
   }
 
   function showForm() {
@@ -143,14 +143,26 @@ function costs({ closed_loop_stable, actuator, noise_passed, load_left, mismatch
   }
   if (peaks.Ms_bound > 1 + 1e-9) said.push(`Peaks: no controller gets Ms below ${formatNumber(peaks.Ms_bound)}; here it is ${formatNumber(peaks.Ms)}.`);
   if (peaks.Mt_bound > 1 + 1e-9) said.push(`Peaks: no controller gets Mt below ${formatNumber(peaks.Mt_bound)}; here it is ${formatNumber(peaks.Mt)}.`);
-  if (step && step.t_settle !== null && step.undershoot_pct !== null && step.overshoot_pct !== null) {
-    for (const { c, effect, bound_pct } of step.effects) {
-      const found = effect === "undershoot" ? step.undershoot_pct : step.overshoot_pct;
-      const settling = `Zero at ${formatShort(c)}: settling in ${formatWithUnit(step.t_settle, unit)}`;
-      said.push(bound_pct < NOTHING ? `${settling} is so slow that it need cost no ${effect}; here it is ${formatFixed(found, 1)} %.` : `${settling} costs at least ${formatNumber(bound_pct)} % ${effect}; here it is ${formatNumber(found)} %.`);
-    }
-  }
+  if (step) said.push(...zerosText(step, unit));
   return part("What this loop makes of it", h("ul", { class: "said" }, ...said.map((text) => h("li", {}, text))));
+}
+
+/** What each real zero of a step response costs. @param {StepShape} step @param {string} unit */
+function zerosText({ t_settle, undershoot_pct, overshoot_pct, effects }, unit) {
+  return effects.map(({ c, effect, bound_pct }) => {
+    const found = effect === "undershoot" ? undershoot_pct : overshoot_pct;
+    const settling = `Zero at ${formatShort(c)}: settling in ${formatWithUnit(t_settle, unit)}`;
+    return bound_pct < NOTHING ? `${settling} is so slow that it need cost no ${effect}; here it is ${formatFixed(found, 1)} %.` : `${settling} costs at least ${formatNumber(bound_pct)} % ${effect}; here it is ${formatNumber(found)} %.`;
+  });
+}
+
+/** The plant without feedback, where a zero on the right sends it the wrong way. @param {LimitsAnswer} answer @param {string} unit */
+function alone({ plant_step }, unit) {
+  const { undershoot_pct, t_undershoot, t_settle, starts_up } = plant_step;
+  if (!undershoot_pct || t_undershoot === null) return null;
+  const start = starts_up ? "It first moves the right way, then turns: an even number of zeros on the right." : "It first moves the wrong way.";
+  const end = t_settle === null ? "" : ` It settles in ${formatWithUnit(t_settle, unit)}.`;
+  return part("The plant alone", finding(`After a step of u it goes ${formatNumber(undershoot_pct)} % below where it was, at t = ${formatWithUnit(t_undershoot, unit)}. ${start}${end} No controller takes that away; a fast one makes it deeper.`));
 }
 
 /** Roots on the right: what they fix, and that it is so. @param {LimitsAnswer} answer */

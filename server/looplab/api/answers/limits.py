@@ -87,7 +87,7 @@ class ZeroEffectAnswer(Answer):
 
 
 class StepShapeAnswer(Answer):
-    """The setpoint response beside what the zeros of T ask for."""
+    """A step response, over its final value, beside what its zeros ask for."""
 
     t_settle: float | None
     undershoot_pct: float | None
@@ -134,7 +134,8 @@ class LimitsAnswer(Answer):
     peaks: PeaksAnswer
     constraints: list[ConstraintAnswer] | None
     integrals: list[LemmaAnswer] | None
-    step: StepShapeAnswer | None
+    step: Annotated[StepShapeAnswer | None, Field(description="y after a setpoint step.")]
+    plant_step: Annotated[StepShapeAnswer, Field(description="y after a step of u, without feedback.")]
     curves: LimitCurves
     reasons: Reasons
 

@@ -22,6 +22,7 @@ from looplab.engine.limits import (
     Limit,
     Mismatch,
     Spread,
+    StepShape,
     Window,
     actuator_demand,
     bandwidth_window,
@@ -34,6 +35,7 @@ from looplab.engine.limits import (
     mismatch,
     noise_passed,
     peak_bounds,
+    plant_step_shape,
 )
 from looplab.engine.limits.bode_integral import log_sensitivity
 from looplab.engine.loop import FeedbackLoop
@@ -142,6 +144,10 @@ def _curves(loop: FeedbackLoop, found: Mismatch) -> dict[str, Any]:
     }
 
 
+def _step(found: StepShape) -> dict[str, Any]:
+    return {name: value for name, value in asdict(found).items() if name != "reason"}
+
+
 def _verdict(loop: FeedbackLoop) -> tuple[bool, str]:
     verdict: Verdict = closed_loop_verdict(loop)
     inside = internal_stability(loop)
@@ -194,8 +200,10 @@ def limits(request: Annotated[LimitsRequest, Body(openapi_examples=EXAMPLES)]) -
         heard = of_stable("noise_passed", lambda: noise_passed(loop, omega_n))
     left = of_stable("load_left", lambda: load_left(loop))
     shape = of_stable("step", lambda: loop_step_shape(loop))
-    if shape is not None and shape.reason:
-        reasons["step"] = shape.reason
+    alone = plant_step_shape(loop.plant)
+    for name, seen in (("step", shape), ("plant_step", alone)):
+        if seen is not None and seen.reason:
+            reasons[name] = seen.reason
     Ms_bound, Mt_bound = peak_bounds(L)
     names = ("peak", "omega_peak", "robustly_stable", "worst_S")
     constraints = of_stable("constraints", lambda: interpolation_constraints(loop))
@@ -219,7 +227,8 @@ def limits(request: Annotated[LimitsRequest, Body(openapi_examples=EXAMPLES)]) -
             for c in constraints
         ],
         "integrals": None if integrals is None else [asdict(i) for i in integrals],
-        "step": None if shape is None else {k: v for k, v in asdict(shape).items() if k != "reason"},
+        "step": None if shape is None else _step(shape),
+        "plant_step": _step(alone),
         "curves": _curves(loop, model),
         "reasons": reasons,
     }

@@ -14,6 +14,7 @@ from looplab.engine.limits.zeros import (
     ZeroEffect,
     loop_step_shape,
     overshoot_bound,
+    plant_step_shape,
     step_shape,
     undershoot_bound,
 )
@@ -47,6 +48,7 @@ __all__ = [
     "noise_passed",
     "overshoot_bound",
     "peak_bounds",
+    "plant_step_shape",
     "pole_bound",
     "step_shape",
     "undershoot_bound",

@@ -14,7 +14,7 @@ from looplab.engine.limits.measured import measured_loop
 from looplab.engine.loop.feedback_loop import FeedbackLoop
 from looplab.engine.loop.hermite import HermiteCurves
 from looplab.engine.loop.metrics import default_horizon
-from looplab.engine.loop.step_response import Response, closed_loop_step
+from looplab.engine.loop.step_response import Response, closed_loop_step, step_response
 from looplab.engine.stability.closed_loop import closed_loop_poles
 from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.transfer_function import TransferFunction
@@ -27,6 +27,8 @@ ROUNDING = 1e-9
 # Farther than this the exponential leaves double precision, and the bound is nothing.
 LARGEST_EXPONENT = 700.0
 POINTS = 1500
+# A lag has settled to rounding after so many of its time constants.
+LAGS = 10.0
 # A loop that has not settled is given twice the time, so often.
 LONGER = 5
 
@@ -215,3 +217,24 @@ def loop_step_shape(loop: FeedbackLoop) -> StepShape:
         horizon *= 2.0
         shape = step_shape(closed_loop_step(alone, horizon, POINTS).setpoint, L.zeros, slowest)
     return shape
+
+
+def plant_step_shape(plant: TransferFunction) -> StepShape:
+    """step_shape of the plant alone, over its final value.
+
+    Parameters
+    ----------
+    plant : TransferFunction
+        Proper.
+
+    Returns
+    -------
+    StepShape
+        Nothing, with the reason, for a plant that does not come to rest, or comes to rest at zero.
+    """
+    reduced, _ = split_hidden_modes(plant)
+    slowest = float(-plant.poles.real.max(initial=-np.inf))
+    if not plant.poles.size or (plant.poles.real >= 0).any() or not plant.dc_gain:
+        return StepShape(None, None, None, None, None, (), "the plant alone does not move to a value other than zero")
+    horizon = reduced.theta + LAGS * plant.order / slowest
+    return step_shape(step_response(reduced, horizon, POINTS), reduced.zeros, slowest)
