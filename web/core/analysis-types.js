@@ -250,6 +250,7 @@
  * @property {{amplitude: number, frequency: number, seen_at: number, k: number, aliased: boolean}[] | null} lines
  * @property {number | null} leakage_pct
  * @property {{t: Numbers, signal: Numbers, seen: Numbers} | null} curves
+ * @property {Numbers | null} expected  amplitudes of the noise alone
  * @property {Reasons} reasons
  */
 

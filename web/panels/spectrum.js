@@ -83,7 +83,7 @@ export function mount(host, store, api) {
     setText(
       says,
       line === undefined
-        ? `The mean is taken out, so that only what moves is left. The spectrum ends at fs/2 = ${formatNumber(highest)} ${per}: what the noise does above it is folded back.`
+        ? `The mean is taken out. The line is what the noise alone gives: it has the shape of ${view().of === "u" ? "|CS|, so a larger gain wears the valve more" : "|T|, so the loop keeps fast noise out of y"}. What stands above it at low frequencies is the step of r.`
         : line.aliased
           ? `Aliased: ${formatShort(line.frequency)} ${per} is seen at |f − ${line.k} fs| = ${formatShort(line.seen_at)} ${per}, for both sines go through the same samples. Sample faster than 2 f = ${formatShort(2 * line.frequency)} ${per}, or filter before sampling.`
           : `${formatShort(line.frequency)} ${per} is below fs/2 = ${formatShort(highest)} ${per}: the sine is seen where it is.`,
@@ -125,7 +125,7 @@ export function mount(host, store, api) {
       render,
       draw: (theme, held) => (analysis?.answer ? spectrumPlot({ answer: analysis.answer, signal: ofSine() ? "samples" : view().of, timeUnit: unit }, theme, held) : null),
       legend: () =>
-        (ofSine() ? ["signal", "samples", "seen", "spectrum", "half_rate"] : [view().of, "half_rate"]).map((name) => {
+        (ofSine() ? ["signal", "samples", "seen", "spectrum", "half_rate"] : [view().of, "expected", "half_rate"]).map((name) => {
           const { label, name: meaning, dash } = /** @type {import("../plots/signals.js").Signal} */ (SIGNALS[name]);
           return name === "samples" ? { signal: name, label, name: meaning, glyph: "●" } : { signal: name, label, name: meaning, dash };
         }),

@@ -52,6 +52,7 @@ export const SIGNALS = {
   signal: { label: "signal", name: "signal between the samples", dash: "solid", width: 1.5 },
   seen: { label: "alias", name: "slowest sine with the same samples", dash: "dash", width: 2 },
   spectrum: { label: "spectrum", name: "amplitude at each frequency", dash: "solid", width: 2 },
+  expected: { label: "noise alone", name: "amplitudes of the noise alone, in the mean square", dash: "solid", width: 2 },
   half_rate: { label: "fs/2", name: "half the sampling rate", dash: "dash", width: 1.5 },
   least_squares: { label: "least squares", name: "least squares", dash: "longdash", width: 2 },
 };

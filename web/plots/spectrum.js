@@ -20,7 +20,7 @@ function stems(x, y) {
  * @returns {Figure}
  */
 export function spectrumPlot({ answer, signal, timeUnit }, theme, held) {
-  const { t, values, frequency, amplitude, curves, lines, highest } = answer;
+  const { t, values, frequency, amplitude, curves, lines, highest, expected } = answer;
   const unit = escapePlotly(timeUnit);
   const end = curves ? (curves.t[curves.t.length - 1] ?? 1) : (t[t.length - 1] ?? 1);
   const fastest = Math.max(highest, ...(lines ?? []).map((line) => line.frequency)) * 1.06;
@@ -51,6 +51,8 @@ export function spectrumPlot({ answer, signal, timeUnit }, theme, held) {
       }),
       trace("half_rate", { ...below, line: lineOf("half_rate", theme), x: [highest, highest], y: [0, 10 * tallest] }),
       trace("spectrum", { ...below, ...stems(frequency, amplitude), line: { ...lineOf("spectrum", theme), color: colour } }),
+      // The mean is taken out of the signal, and with it what the noise has at 0.
+      trace("expected", { ...below, x: expected ? frequency.slice(1) : [], y: expected?.slice(1) ?? [], line: lineOf("expected", theme) }),
       trace("bins", {
         ...below,
         mode: "markers",

@@ -7,7 +7,15 @@ from hypothesis import strategies as st
 
 from looplab.engine.errors import InvalidInput
 from looplab.engine.frequency.sines import Sine, sum_of_sines
-from looplab.engine.frequency.spectrum import alias, dft, inverse_dft, leakage_pct, spectrum, window_values
+from looplab.engine.frequency.spectrum import (
+    alias,
+    dft,
+    inverse_dft,
+    leakage_pct,
+    noise_amplitude,
+    spectrum,
+    window_values,
+)
 from looplab.engine.loop import PID, FeedbackLoop
 from looplab.engine.loop.sampled_signals import loop_signals
 from looplab.engine.response import held_samples, simulate
@@ -84,6 +92,24 @@ def test_noise_in_a_loop_is_a_setpoint_of_the_other_sign(text: str) -> None:
     assert found.e == pytest.approx(2.0 - found.y)
     # The proportional part jumps with the noise.
     assert found.u[0] == pytest.approx(1.2 * (2.0 - found.n[0]))
+
+
+@pytest.mark.parametrize("window", ["rectangular", "hann"])
+def test_noise_has_the_expected_spectrum(window: str) -> None:
+    """Mean squares over 80 seeds and over the bins; bin by bin the line |H| itself is that of the pulse."""
+    loop = FeedbackLoop(parse_transfer_function("1/(s+1)"), PID(2.0))
+    expected = noise_amplitude(loop_signals(loop, 40.0, 128, noise=0.3).pulse_u, 0.3, window)
+    power = np.zeros(65)
+    for seed in range(80):
+        found = loop_signals(loop, 40.0, 128, setpoint=0.0, noise=0.3, seed=seed)
+        power += spectrum(found.u, 1.0 / float(found.t[1]), window).amplitude ** 2 / 80
+    ratio = power[3:-1] / expected[3:-1] ** 2
+    assert ratio.mean() == pytest.approx(1.0, abs=0.06)
+    # T sampled with held noise: 2/3 (1 - q)/(z - q), q = e^{-3 Delta}; u = -2 (1 - that).
+    q, z = np.exp(-3 * 40 / 127), np.exp(2j * np.pi * np.arange(65) / 128)
+    w = window_values(window, 128)
+    exact = 2 * 0.3 * np.abs(2 * (1 - 2 / 3 * (1 - q) / (z - q))) * np.sqrt((w**2).sum()) / w.sum()
+    assert expected[1:-1] == pytest.approx(exact[1:-1], rel=1e-9)
 
 
 def test_a_loop_with_a_load_and_a_weight() -> None:

@@ -60,4 +60,5 @@ class SpectrumAnswer(Answer):
         float | None, Field(description="Share of the energy that does not lie at the signal's frequencies.")
     ]
     curves: SineCurves | None
+    expected: Annotated[Numbers | None, Field(description="Amplitudes of the noise alone, in the mean square.")]
     reasons: Reasons

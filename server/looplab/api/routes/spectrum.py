@@ -15,7 +15,7 @@ from looplab.api.docs import ERRORS
 from looplab.api.encode import Arrays, json_response
 from looplab.api.strict import StrictRoute
 from looplab.engine.frequency.sines import Sine, sum_of_sines
-from looplab.engine.frequency.spectrum import MAX_SAMPLES, Window, alias, leakage_pct, spectrum
+from looplab.engine.frequency.spectrum import MAX_SAMPLES, Window, alias, leakage_pct, noise_amplitude, spectrum
 from looplab.engine.loop.sampled_signals import loop_signals
 from looplab.engine.systems.polynomial import FloatArray
 from looplab.schemas import Loop, Model, located
@@ -114,12 +114,16 @@ def _of_sines(sines: list[Sine], offset: float, rate: float, samples: int) -> di
         lines.append({"amplitude": sine.amplitude, "frequency": sine.frequency, **aliased})
     t = np.linspace(0.0, (min(samples, SHOWN) - 1) / rate, FINE)
     seen = sum_of_sines([sine.aliased(rate) for sine in sines], t, offset)
-    return {"lines": lines, "curves": {"t": t, "signal": sum_of_sines(sines, t, offset), "seen": seen}}
+    return {
+        "lines": lines,
+        "curves": {"t": t, "signal": sum_of_sines(sines, t, offset), "seen": seen},
+        "expected": None,
+    }
 
 
 def _sampled(request: SpectrumRequest) -> tuple[FloatArray, float, dict[str, Any]]:
     """The samples, their rate, and what is known of them beside."""
-    signal, rate, unknown = request.signal, request.rate, {"lines": None, "curves": None}
+    signal, rate, unknown = request.signal, request.rate, {"lines": None, "curves": None, "expected": None}
     if isinstance(signal, SampledSignal):
         return np.array(signal.values), rate, unknown
     assert request.samples is not None
@@ -132,7 +136,9 @@ def _sampled(request: SpectrumRequest) -> tuple[FloatArray, float, dict[str, Any
             loop = signal.loop.to_engine()
         horizon = (request.samples - 1) / rate
         found = loop_signals(loop, horizon, request.samples, signal.setpoint, signal.load, signal.noise, signal.seed)
-    return getattr(found, signal.of), float(1.0 / found.t[1]), unknown
+    pulse = found.pulse_u if signal.of == "u" else found.pulse_y
+    expected = noise_amplitude(pulse, signal.noise, request.window)
+    return getattr(found, signal.of), float(1.0 / found.t[1]), unknown | {"expected": expected}
 
 
 @router.post("/spectrum", summary="Spectrum", responses={200: {"model": SpectrumAnswer}, **ERRORS})
@@ -147,6 +153,8 @@ def spectrum_of(request: Annotated[SpectrumRequest, Body(openapi_examples=EXAMPL
     found = spectrum(used, rate, request.window)
     reasons: dict[str, str] = {}
     share = None
+    if beside["expected"] is None:
+        reasons["expected"] = "known for a signal of a loop"
     if beside["lines"] is None:
         reasons |= dict.fromkeys(("lines", "leakage_pct", "curves"), "known for a sum of sines")
     else:

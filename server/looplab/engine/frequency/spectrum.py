@@ -257,3 +257,36 @@ def leakage_pct(found: Spectrum, lines: npt.ArrayLike, window: Window) -> float:
         k = int(np.rint(line / found.resolution))
         own[max(k - MAIN_LOBE[window], 0) : k + MAIN_LOBE[window] + 1] = True
     return float(100.0 * power[~own].sum() / total) if total else 0.0
+
+
+def noise_amplitude(pulse: npt.ArrayLike, deviation: float, window: Window = "rectangular") -> FloatArray:
+    r"""Amplitudes that white noise has, in the mean square, behind a system that answers a pulse.
+
+    .. math:: \sqrt{\mathrm{E} A_k^2} = 2 \sigma\, \Big|\sum_n h_n e^{-2\pi i k n/N}\Big|\,
+        \frac{\sqrt{\sum_n w_n^2}}{\sum_n w_n}
+
+    Parameters
+    ----------
+    pulse : array_like, shape (N,)
+        h, the answer to one sample of size 1 [signal/noise].
+    deviation : float
+        sigma of the noise, one value a sample [noise].
+    window : str
+        "rectangular" or "hann".
+
+    Returns
+    -------
+    ndarray, shape (N // 2 + 1,)
+        At the frequencies of ``spectrum`` [signal]; half of it at 0 and at half the sampling rate.
+
+    References
+    ----------
+    .. [1] L. Ljung, System Identification: Theory for the User, 2nd ed., Prentice Hall 1999, sec. 2.3.
+    """
+    h = _samples(pulse)
+    w = window_values(window, h.size)
+    out = np.asarray(2.0 * deviation * np.abs(np.fft.rfft(h)) * np.sqrt((w**2).sum()) / w.sum())
+    out[0] *= 0.5
+    if h.size % 2 == 0:
+        out[-1] *= 0.5
+    return out

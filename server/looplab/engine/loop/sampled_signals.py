@@ -18,13 +18,18 @@ MAX_SAMPLES = 2048
 
 @dataclass(frozen=True)
 class SampledSignals:
-    """y, u, e = r - y and the noise n over t, evenly spaced, shape (N,) each [output], [input], [time]."""
+    """y, u, e = r - y and the noise n over t, evenly spaced, shape (N,) each [output], [input], [time].
+
+    ``pulse_y`` and ``pulse_u`` are what one sample of noise of size 1, held for one step, adds to y and u.
+    """
 
     t: FloatArray
     y: FloatArray
     u: FloatArray
     e: FloatArray
     n: FloatArray
+    pulse_y: FloatArray
+    pulse_u: FloatArray
 
 
 def loop_signals(
@@ -95,4 +100,5 @@ def loop_signals(
 
     y = setpoint * steps.setpoint.y + load * steps.load.y - heard(plain.setpoint.y)
     u = setpoint * steps.setpoint.u + load * steps.load.u - heard(plain.setpoint.u)
-    return SampledSignals(steps.t, y, u, setpoint - y, n)
+    pulses = (-np.diff(phi, prepend=0.0) for phi in (plain.setpoint.y, plain.setpoint.u))
+    return SampledSignals(steps.t, y, u, setpoint - y, n, *pulses)
