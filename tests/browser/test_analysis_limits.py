@@ -80,6 +80,6 @@ def test_signals_of_the_loop(page: Page):
     open_analyses(page, "spectrum", query=FOPDT)
     panel = page.locator("#panel-spectrum")
     panel.get_by_role("radio", name=re.compile("^u of the loop")).check()
-    expect(panel).to_contain_text("The mean is taken out")
+    expect(panel).to_contain_text("it has the shape of |CS|")
     expect(panel.get_by_role("slider", name="Noise of the sensor slider")).to_be_visible()
     expect(panel.get_by_role("slider", name="Frequency f slider")).to_be_hidden()

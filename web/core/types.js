@@ -82,7 +82,7 @@
  * @property {number} spread_pct  how far gain, time constants and dead time may be off
  */
 
-/** @typedef {{of: "sine" | "y" | "u" | "e", frequency: number, rate: number, loop_rate: number, samples: number, noise: number, window: "rectangular" | "hann"}} SpectrumView */
+/** @typedef {{of: "sine" | "y" | "u" | "e", frequency: number, rate: number, loop_rate: number, samples: number, loop_samples: number, noise: number, setpoint: 0 | 1, window: "rectangular" | "hann"}} SpectrumView */
 
 /**
  * How the student looks at it: travels in the URL, but is no step of undo.

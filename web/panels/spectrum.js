@@ -31,11 +31,17 @@ export function mount(host, store, api) {
   const of = h("segmented-control", { label: "Spectrum of", class: "small" });
   of.options = [
     { value: "sine", label: "Sine", title: "A sine of your own" },
-    { value: "y", label: "y", title: "y of the loop: r steps to 1, and the sensor is noisy" },
-    { value: "u", label: "u", title: "u of the loop: r steps to 1, and the sensor is noisy" },
+    { value: "y", label: "y", title: "y of the loop with a noisy sensor" },
+    { value: "u", label: "u", title: "u of the loop with a noisy sensor" },
     { value: "e", label: "e", title: "The error r − y of the loop" },
   ];
   of.addEventListener("value-change", () => change({ of: /** @type {SpectrumView["of"]} */ (of.value) }));
+  const setpoint = h("segmented-control", { label: "Setpoint r", class: "small" });
+  setpoint.options = [
+    { value: "0", label: "r stays", title: "Only the noise of the sensor moves the loop" },
+    { value: "1", label: "r steps", title: "The setpoint steps to 1 as well" },
+  ];
+  setpoint.addEventListener("value-change", () => change({ setpoint: setpoint.value === "1" ? 1 : 0 }));
   const window = h("segmented-control", { label: "Window", class: "small" });
   window.options = [
     { value: "rectangular", label: "Rectangular", title: "No window: the record as it is" },
@@ -48,7 +54,7 @@ export function mount(host, store, api) {
     const slider = h("gain-slider", { label, ...KNOBS[name], ...more });
     const take = (/** @type {Event} */ event) => {
       const { value } = /** @type {CustomEvent<{value: number}>} */ (event).detail;
-      change({ [name]: name === "samples" ? Math.round(value) : value });
+      change({ [name]: name.endsWith("samples") ? Math.round(value) : value });
     };
     slider.addEventListener("value-input", take);
     slider.addEventListener("value-change", take);
@@ -60,6 +66,7 @@ export function mount(host, store, api) {
     loop_rate: knob("loop_rate", "Sampling rate fs", { unit: `1/${unit}`, above: 0 }),
     noise: knob("noise", "Noise of the sensor", { linear: true, hard: true }),
     samples: knob("samples", "Samples N", { hard: true, linear: true, step: 1 }),
+    loop_samples: knob("loop_samples", "Samples N", { hard: true, linear: true, step: 1 }),
   };
   const says = h("p", { class: "finding" });
   const leaks = h("p", { class: "finding" });
@@ -70,9 +77,11 @@ export function mount(host, store, api) {
   function showForm() {
     of.value = view().of;
     window.value = view().window;
+    setpoint.value = String(view().setpoint);
+    setpoint.hidden = ofSine();
     for (const [name, slider] of Object.entries(knobs)) slider.value = view()[/** @type {KnobName} */ (name)];
-    knobs.frequency.hidden = knobs.rate.hidden = !ofSine();
-    knobs.noise.hidden = knobs.loop_rate.hidden = ofSine();
+    knobs.frequency.hidden = knobs.rate.hidden = knobs.samples.hidden = !ofSine();
+    knobs.noise.hidden = knobs.loop_rate.hidden = knobs.loop_samples.hidden = ofSine();
   }
 
   function render() {
@@ -83,7 +92,7 @@ export function mount(host, store, api) {
     setText(
       says,
       line === undefined
-        ? `The mean is taken out. The line is what the noise alone gives: it has the shape of ${view().of === "u" ? "|CS|, so a larger gain wears the valve more" : "|T|, so the loop keeps fast noise out of y"}. What stands above it at low frequencies is the step of r.`
+        ? `The mean is taken out. The line is what the noise alone gives: it has the shape of ${view().of === "u" ? "|CS|, so a larger gain wears the valve more" : "|T|, so the loop keeps fast noise out of y"}.${view().setpoint ? " What stands above it is the step of r, which the record cuts off: try the Hann window." : ""}`
         : line.aliased
           ? `Aliased: ${formatShort(line.frequency)} ${per} is seen at |f − ${line.k} fs| = ${formatShort(line.seen_at)} ${per}, for both sines go through the same samples. Sample faster than 2 f = ${formatShort(2 * line.frequency)} ${per}, or filter before sampling.`
           : `${formatShort(line.frequency)} ${per} is below fs/2 = ${formatShort(highest)} ${per}: the sine is seen where it is.`,
@@ -99,7 +108,7 @@ export function mount(host, store, api) {
     );
     facts.replaceChildren(
       valueTable("In numbers", ["", "Value", ""], [
-        ["Samples N", String(samples), line === undefined && samples !== view().samples ? "more than asked: the dead time must be a whole number of them" : ""],
+        ["Samples N", String(samples), line === undefined && samples !== view().loop_samples ? "more than asked: the dead time must be a whole number of them" : ""],
         ["Rate fs", formatNumber(rate, 4), `per ${unit}`],
         ["Record N/fs", formatNumber(samples / rate, 4), unit],
         ["Finest step fs/N", formatNumber(resolution, 4), `per ${unit}`],
@@ -118,7 +127,7 @@ export function mount(host, store, api) {
       title: "Spectrum",
       help: ANALYSIS_HELP["spectrum"] ?? "",
       controls: [of],
-      form: [h("div", { class: "knob-grid" }, ...Object.values(knobs)), window],
+      form: [h("div", { class: "knob-grid" }, ...Object.values(knobs)), setpoint, window],
       words: [h("div", { class: "analysis-parts" }, says, leaks, facts)],
       figure: createFigure,
       subject: () => view().of,

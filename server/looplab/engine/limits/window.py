@@ -117,7 +117,7 @@ def _zero(L: TransferFunction) -> Limit:
     worst = min(zeros.tolist(), key=zero_bound)
     return Limit(
         "zero", "upper", zero_bound(worst),
-        f"the zero at {pole_text(worst)} sends y the wrong way first; a faster loop only makes that worse",
+        f"the zero at {pole_text(worst)} pulls y the wrong way; a faster loop only makes that worse",
     )  # fmt: skip
 
 
