@@ -21,6 +21,7 @@ ROUTES = [
     *("/mimo/rga", "/mimo/simulate", "/mimo/interaction", "/mimo/decoupler", "/mimo/tune"),
     *("/state-feedback", "/state-feedback/simulate", "/state-feedback/region"),
     *("/pole-placement", "/smith"),
+    *("/limits", "/bode-integral", "/spectrum"),
 ]
 RAW = {
     "empty": b"",

@@ -8,7 +8,9 @@ const STORAGE_KEY = "looplab-theme";
 const SIGNALS = [
   "r", "y", "y_m", "u", "d", "n", "e", "L", "P", "C", "S", "PS", "CS", "T", "CFS", "TF", "margin", "pole", "locus",
   "locus-negative", "sketch", "infinity", "term", "sum", "simulated", "half_rule", "taylor", "two_point",
-  "least_squares", "contour", "rule", "now", "optimal", "case_1", "case_2", "case_3", "case_4", "case_5", "case_6", "model", "construction",
+  "least_squares", "contour", "rule", "now", "optimal", "case_1", "case_2", "case_3", "case_4", "case_5", "case_6",
+  "ideal_S", "model_error", "samples", "signal", "seen", "spectrum", "half_rate", "expected",
+  "model", "construction",
 ];
 const systemDark = matchMedia("(prefers-color-scheme: dark)");
 

@@ -3,7 +3,9 @@
 /** @import {AnalysesView, CompareView, ControllerType, ResponseView} from "./types.js" */
 
 import { INPUTS, inputFromQuery, inputToQuery, startingInput, TRANSFORMS } from "./inputs.js";
+import { limitsFromQuery, limitsToQuery, startingLimits } from "./limits.js";
 import { listText, parseList } from "./lists.js";
+import { spectrumFromQuery, spectrumToQuery, startingSpectrum } from "./spectrum.js";
 
 const SUBJECTS = new Set(["plant", "open_loop", "closed_loop"]);
 const SUMS = new Set(["superposition", "convolution"]);
@@ -28,6 +30,8 @@ export function startingAnalyses() {
     compare: { rules: ["ziegler_nichols", "amigo", "simc"].map((rule) => ({ rule, type: "PI" })), spread_pct: null, true_plant: "" },
     Ms_limit: 1.6,
     tune: { tau_c: null, PM_deg: 45 },
+    limits: startingLimits(),
+    spectrum: startingSpectrum(),
   };
 }
 
@@ -37,7 +41,7 @@ function same(a, b) {
 }
 
 /** Only what is not as it starts. @param {URLSearchParams} query @param {AnalysesView} analyses */
-export function analysesToQuery(query, { response, laplace, polynomial, model_type, cancel_tolerance, compare, Ms_limit, tune }) {
+export function analysesToQuery(query, { response, laplace, polynomial, model_type, cancel_tolerance, compare, Ms_limit, tune, limits, spectrum }) {
   const start = startingAnalyses();
   if (response.of !== start.response.of) query.set("response.of", response.of);
   if (!same(response.input, start.response.input)) inputToQuery(query, "response", response.input);
@@ -57,6 +61,8 @@ export function analysesToQuery(query, { response, laplace, polynomial, model_ty
   if (Ms_limit !== start.Ms_limit) query.set("Ms_limit", String(Ms_limit));
   if (tune.tau_c !== null) query.set("tune.tau_c", String(tune.tau_c));
   if (tune.PM_deg !== start.tune.PM_deg) query.set("tune.PM_deg", String(tune.PM_deg));
+  limitsToQuery(query, limits);
+  spectrumToQuery(query, spectrum);
 }
 
 /** @param {string} text @returns {CompareView["rules"]} */
@@ -112,5 +118,7 @@ export function analysesFromQuery(query) {
       tau_c: within(tau_c, TAU_C) ? (tau_c ?? null) : null,
       PM_deg: within(PM_deg, PM_DEG) ? (PM_deg ?? start.tune.PM_deg) : start.tune.PM_deg,
     },
+    limits: limitsFromQuery(query),
+    spectrum: spectrumFromQuery(query),
   };
 }

@@ -188,4 +188,70 @@
  * @property {{Kc: (number | null)[], tau_I: (number | null)[]}} boundary
  */
 
+/** @typedef {{id: string, side: "lower" | "upper", omega: number | null, binding: boolean, met: boolean | null, because: string}} LimitAnswer */
+/** @typedef {{value: number, omega: number | null}} PeakAnswer */
+/** @typedef {{omega: number | null, reason: string | null}} BandwidthAnswer */
+
+/** @typedef {{t_settle: number | null, undershoot_pct: number | null, overshoot_pct: number | null, t_undershoot: number | null, starts_up: boolean | null, effects: {c: number, effect: "undershoot" | "overshoot", bound_pct: number}[]}} StepShape */
+
+/**
+ * @typedef {object} LimitsAnswer
+ * @property {boolean} closed_loop_stable
+ * @property {number | null} omega_c
+ * @property {BandwidthAnswer} bandwidth
+ * @property {{low: number | null, high: number | null, open: boolean, because: string}} window
+ * @property {LimitAnswer[]} limits
+ * @property {{initial: number, final: number | null, ratio: number | null, peak: PeakAnswer, plant_bandwidth: BandwidthAnswer, loop_bandwidth: BandwidthAnswer} | null} actuator
+ * @property {number | null} noise_passed
+ * @property {PeakAnswer | null} load_left
+ * @property {{peak: number, omega_peak: number, robustly_stable: boolean, worst_S: number | null} | null} mismatch
+ * @property {{Ms: number | null, Mt: number | null, Ms_bound: number, Mt_bound: number}} peaks
+ * @property {{root: Complex, kind: "zero" | "pole", S: Complex, T: Complex, peak_bound: number}[] | null} constraints
+ * @property {{root: number, kind: "zero" | "pole", signal: "y" | "e", step: "setpoint" | "load", value: number, theorem: number}[] | null} integrals
+ * @property {StepShape | null} step
+ * @property {StepShape} plant_step
+ * @property {{omega: Numbers, S: Numbers, T: Numbers, model_error: Numbers, ideal_S: Numbers | null}} curves
+ * @property {Reasons} reasons
+ */
+
+/**
+ * @typedef {object} BodeIntegralAnswer
+ * @property {number | null} value
+ * @property {number | null} theorem
+ * @property {number | null} difference
+ * @property {number | null} error
+ * @property {{name: "origin" | "middle" | "tail", omega_from: number, omega_to: number | null, value: number, how: string}[] | null} pieces
+ * @property {number | null} area_below
+ * @property {number | null} area_above
+ * @property {number | null} limit_sL
+ * @property {number} theta
+ * @property {Complex[]} unstable_poles
+ * @property {boolean} closed_loop_stable
+ * @property {Numbers} omega
+ * @property {Numbers} ln_S
+ * @property {Reasons} reasons
+ */
+
+/**
+ * @typedef {object} SpectrumAnswer
+ * @property {string} time_unit
+ * @property {number} rate
+ * @property {number} samples
+ * @property {Numbers} t
+ * @property {Numbers} values
+ * @property {Numbers} frequency
+ * @property {Numbers} omega
+ * @property {Numbers} amplitude
+ * @property {Numbers} magnitude
+ * @property {Numbers} phase_deg
+ * @property {number} resolution
+ * @property {number} highest
+ * @property {{energy: number, spectral_energy: number, residual: number, inverse_error: number}} parseval
+ * @property {{amplitude: number, frequency: number, seen_at: number, k: number, aliased: boolean}[] | null} lines
+ * @property {number | null} leakage_pct
+ * @property {{t: Numbers, signal: Numbers, seen: Numbers} | null} curves
+ * @property {Numbers | null} expected  amplitudes of the noise alone
+ * @property {Reasons} reasons
+ */
+
 export {};

@@ -71,7 +71,7 @@ export function createApi({ base = "/api/v1", fetch = globalThis.fetch.bind(glob
     tune: (request) => call("/tune", request),
     /** @returns {Promise<{rules: import("./analysis-types.js").RuleEntry[]}>} */
     rules: () => call("/tune/rules"),
-    /** One analysis. @param {"response" | "laplace" | "routh" | "stability" | "state-space" | "approximate" | "compare" | "gain-map" | "tune/optimal" | "tune/trade-off" | "mimo/rga" | "mimo/simulate" | "mimo/interaction" | "mimo/decoupler" | "mimo/tune" | "state-feedback" | "state-feedback/simulate" | "state-feedback/region" | "pole-placement" | "smith"} route @param {object} request @returns {Promise<any>} */
+    /** One analysis. @param {"response" | "laplace" | "routh" | "stability" | "state-space" | "approximate" | "compare" | "gain-map" | "tune/optimal" | "tune/trade-off" | "mimo/rga" | "mimo/simulate" | "mimo/interaction" | "mimo/decoupler" | "mimo/tune" | "state-feedback" | "state-feedback/simulate" | "state-feedback/region" | "pole-placement" | "smith" | "limits" | "bode-integral" | "spectrum"} route @param {object} request @returns {Promise<any>} */
     analyse: async (route, request) => decodeArrays(await call(`/${route}`, request)),
     /** @returns {Promise<{plants: import("./plant-types.js").PlantSummary[]}>} */
     plants: () => call("/plants"),

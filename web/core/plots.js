@@ -21,6 +21,9 @@ export const ANALYSES = [
   { id: "low_order", label: "Low order" },
   { id: "compare", label: "Compare" },
   { id: "gain_map", label: "Gain map" },
+  { id: "limits", label: "Limits" },
+  { id: "bode_integral", label: "Bode integral" },
+  { id: "spectrum", label: "Spectrum" },
 ];
 
 export const VIEW_IDS = [...PLOTS, ...ANALYSES].map(({ id }) => id);

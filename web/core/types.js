@@ -77,7 +77,20 @@
  * @property {CompareView} compare
  * @property {number} Ms_limit  what the optimal settings may reach
  * @property {RuleOptions} tune
+ * @property {LimitsView} limits
+ * @property {SpectrumView} spectrum
  */
+
+/**
+ * What is known of the loop's surroundings; null sets no limit.
+ * @typedef {object} LimitsView
+ * @property {number | null} u_limit  largest |u| for a unit of r
+ * @property {number | null} noise_omega  from where on the sensor is noisy
+ * @property {number | null} load_error  largest error that a unit of load may leave
+ * @property {number} spread_pct  how far gain, time constants and dead time may be off
+ */
+
+/** @typedef {{of: "sine" | "y" | "u" | "e", frequency: number, rate: number, loop_rate: number, samples: number, loop_samples: number, noise: number, setpoint: 0 | 1, window: "rectangular" | "hann"}} SpectrumView */
 
 /**
  * How the student looks at it: travels in the URL, but is no step of undo.

@@ -14,11 +14,13 @@ import "../components/site-header.js";
 import { toast } from "../components/status-toast.js";
 import * as actionsBar from "../panels/actions-bar.js";
 import * as bode from "../panels/bode.js";
+import * as bodeIntegral from "../panels/bode-integral.js";
 import * as compare from "../panels/compare.js";
 import * as controllerCard from "../panels/controller-card.js";
 import * as gainMap from "../panels/gain-map.js";
 import * as instrumentsCard from "../panels/instruments-card.js";
 import * as laplace from "../panels/laplace.js";
+import * as limits from "../panels/limits.js";
 import * as loopDiagram from "../panels/loop-diagram.js";
 import * as lowOrder from "../panels/low-order.js";
 import * as nichols from "../panels/nichols.js";
@@ -29,6 +31,7 @@ import * as response from "../panels/response.js";
 import * as rootLocus from "../panels/root-locus.js";
 import * as routh from "../panels/routh.js";
 import * as sensitivity from "../panels/sensitivity.js";
+import * as spectrum from "../panels/spectrum.js";
 import * as stability from "../panels/stability.js";
 import * as stateSpace from "../panels/state-space.js";
 import * as step from "../panels/step.js";
@@ -57,6 +60,9 @@ const STAGE = {
   low_order: lowOrder.mount,
   compare: compare.mount,
   gain_map: gainMap.mount,
+  limits: limits.mount,
+  bode_integral: bodeIntegral.mount,
+  spectrum: spectrum.mount,
 };
 
 const NARROW = matchMedia("(max-width: 63.99rem)");

@@ -47,6 +47,14 @@ export const SIGNALS = {
   case_5: { label: "rule 5", name: "fifth rule", dash: "dash", width: 2 },
   case_6: { label: "rule 6", name: "sixth rule", dash: "dot", width: 2.25 },
   model: { label: "model", name: "what the model answers", dash: "dash", width: 2.25 },
+  ideal_S: { label: "best S", name: "S of the best loop with this dead time", dash: "dot", width: 1.5 },
+  model_error: { label: "1/|GΔ|", name: "one over the largest model error", dash: "dashdot", width: 1.75 },
+  samples: { label: "samples", name: "samples", dash: "solid", width: 1.5 },
+  signal: { label: "signal", name: "signal between the samples", dash: "solid", width: 1.5 },
+  seen: { label: "alias", name: "slowest sine with the same samples", dash: "dash", width: 2 },
+  spectrum: { label: "spectrum", name: "amplitude at each frequency", dash: "solid", width: 2 },
+  expected: { label: "noise alone", name: "amplitudes of the noise alone, in the mean square", dash: "solid", width: 2 },
+  half_rate: { label: "fs/2", name: "half the sampling rate", dash: "dash", width: 1.5 },
   least_squares: { label: "least squares", name: "least squares", dash: "longdash", width: 2 },
 };
 

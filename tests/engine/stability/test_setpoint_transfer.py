@@ -7,6 +7,7 @@ from looplab.engine.errors import InvalidInput
 from looplab.engine.loop import PID, FeedbackLoop
 from looplab.engine.stability import setpoint_transfer
 from looplab.engine.systems import parse_transfer_function
+from placed_loops import placed_loops
 
 
 @pytest.mark.parametrize(
@@ -33,6 +34,14 @@ def test_a_mode_that_cancels_in_the_loop_is_not_in_it():
     np.testing.assert_allclose(sorted(T.poles.real), [-3, -1], rtol=1e-12)
     assert T.zeros.size == 0
     assert T.gain == pytest.approx(3, rel=1e-14)
+
+
+def test_real_poles_close_together_stay_real():
+    """Closed-loop poles drawn on the negative axis: no rounding may part one from a conjugate that it does not have."""
+    for loop, _, _ in placed_loops():
+        T, omega = setpoint_transfer(loop), np.logspace(-1, 1, 9)
+        L = loop.open_loop.response(omega)
+        np.testing.assert_allclose(T.response(omega), L / (1 + L), rtol=1e-6)
 
 
 def test_dead_time_and_a_setpoint_weight_are_refused():

@@ -106,7 +106,8 @@ def polish_few(L: TransferFunction, guess: ComplexArray, steps: int = 2) -> Comp
                 break
             miss = cmath.log(-value)
             if left:
-                step = miss / rate
+                # Rounding must not lead a real pole off the axis: it has no conjugate.
+                step = miss / rate if start.imag else complex((miss / rate).real)
                 s -= step
                 if abs(step) <= FINAL * abs(s):
                     break
