@@ -10,6 +10,7 @@ import numpy.typing as npt
 from looplab.engine.errors import InvalidInput
 from looplab.engine.loop.feedback_loop import FeedbackLoop
 from looplab.engine.loop.step_response import closed_loop_step
+from looplab.engine.stability.closed_loop import closed_loop_verdict
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -71,7 +72,7 @@ def loop_signals(
     Raises
     ------
     InvalidInput
-        The response grows out of bounds, or a value is outside its range.
+        The loop is not stable, its response grows out of bounds, or a value is outside its range.
     NoConvergence
         The dead time is too long for the speed of the loop and the horizon.
 
@@ -83,13 +84,18 @@ def loop_signals(
         raise InvalidInput(f"samples must be from 20 to {MAX_SAMPLES}", field="samples")
     if not (np.isfinite(noise) and noise >= 0):
         raise InvalidInput("the noise must be zero or positive", field="noise")
+    verdict = closed_loop_verdict(loop)
+    if not verdict.closed_loop_stable:
+        raise InvalidInput(
+            f"the loop is not stable, and what grows has no spectrum: {verdict.because}",
+            field="loop",
+            hint="make the loop stable",
+        )
     steps = closed_loop_step(loop, horizon, samples)
     plain = closed_loop_step(replace(loop, controller=loop.C), horizon, samples) if loop.feedforward else steps
     responses = (steps.setpoint, steps.load, plain.setpoint)
     if any(response.truncated_reason for response in responses):
-        raise InvalidInput(
-            "the response grows without end: such a signal has no spectrum", field="loop", hint="make the loop stable"
-        )
+        raise InvalidInput("the response grows out of bounds", field="loop", hint="choose other units")
     N = steps.t.size
     n = noise * np.random.default_rng(seed).standard_normal(N)
     jumps = np.diff(n, prepend=0.0)
