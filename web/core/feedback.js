@@ -98,7 +98,7 @@ export function horizonOf(state, design, pushes) {
  * @param {FeedbackState} state
  * @param {FeedbackDesign} design
  * @param {PushNow[]} pushes
- * @param {{free?: boolean, endless?: boolean}} [instead]  without the limit of the input, without the end of the track
+ * @param {{free?: boolean, endless?: boolean, seen?: boolean}} [instead]  without the limit of the input, without the end of the track, without the observer
  */
 export function runRequest(state, design, pushes, instead = {}) {
   const profile = profileOf(state.plant);
@@ -106,7 +106,7 @@ export function runRequest(state, design, pushes, instead = {}) {
   const limit = instead.free ? FREE : state.limit;
   const input = design.inputs[0]?.name ?? "";
   return {
-    ...designRequest({ ...state, endless: state.endless || instead.endless === true }),
+    ...designRequest({ ...state, endless: state.endless || instead.endless === true, observer: state.observer && !instead.seen }),
     horizon: horizonOf(state, design, pushes),
     points: 601,
     initial: Object.fromEntries(design.states.filter(({ name }) => state.start[name]).map(({ name, value }) => [name, value + (state.start[name] ?? 0)])),

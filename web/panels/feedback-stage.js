@@ -17,6 +17,10 @@ const PACES = [
   { value: "0.25", label: "Slow", title: "A quarter of that" },
 ];
 
+/** What is to blame, by the first trial that is caught. */
+const CONCLUSIONS = ["It is the motor that is too weak.", "It is the track that is too short.", "Motor and track are both too small.", "It is the observer: until its estimate has found the tilt, the law pushes the wrong amount."];
+const FAR = "Neither motor nor track is to blame: this far from upright the linear model is wrong, and its law pushes the wrong amount. Map the region below to see how far it holds.";
+
 /**
  * @param {HTMLElement} host
  * @param {FeedbackSession} session
@@ -134,6 +138,7 @@ export function mount(host, session, api, plants) {
       { name: "a motor without limit", instead: { free: true } },
       { name: "a track without end", instead: { endless: true } },
       { name: "both", instead: { free: true, endless: true } },
+      ...(state.observer ? [{ name: "both, and every state measured", instead: { free: true, endless: true, seen: true } }] : []),
     ];
     try {
       const found = await Promise.all(trials.map(({ instead }) => api.analyse("state-feedback/simulate", { ...runRequest(state, design, [], instead), points: 201 })));
@@ -144,8 +149,7 @@ export function mount(host, session, api, plants) {
         const event = trial.nonlinear?.events[0];
         return h("li", { "data-kind": saved[i] ? "good" : "bad" }, h("span", {}, `With ${name}: `), h("strong", {}, saved[i] ? "caught" : `lost${event ? `, ${event.message} after ${formatNumber(event.t, 2)} ${design.time_unit}` : ""}`));
       });
-      const [motor, track, both] = saved;
-      const conclusion = motor ? "It is the motor that is too weak." : track ? "It is the track that is too short." : both ? "Motor and track are both too small." : "Neither motor nor track is to blame: this far from upright the linear model is wrong, and its law pushes the wrong amount. Map the region below to see how far it holds.";
+      const conclusion = design.closed_loop_stable ? (CONCLUSIONS[saved.indexOf(true)] ?? FAR) : "The feedback itself is unstable: a pole lies right of the axis.";
       because.replaceChildren(h("p", {}, "The same start again,"), h("ul", {}, ...lines), h("p", {}, h("strong", {}, conclusion)));
     } catch (error) {
       because.replaceChildren(h("p", { class: "finding" }, sentence(/** @type {Error} */ (error).message)));

@@ -167,6 +167,9 @@ def _prepare(problem: FeedbackProblem) -> _Prepared:
 def _design(problem: FeedbackProblem, model: StateSpaceModel, outputs: list[_Signal]) -> StateFeedback:
     every = [each.name for each in outputs]
     measured = every if problem.measured is None else list(problem.measured)
+    for names, field in ((measured, "measured"), (problem.controlled, "controlled")):
+        if len(set(names)) < len(names):
+            raise InvalidInput("an output stands twice", field=field)
     settings = DesignSettings(
         problem.gain,
         problem.observer,

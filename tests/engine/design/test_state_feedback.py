@@ -100,6 +100,10 @@ def test_several_inputs_give_the_poles_and_agree_with_python_control():
     assert best.K == pytest.approx(np.array(K), rel=1e-9, abs=1e-9)
     assert np.sort_complex(best.poles) == pytest.approx(np.sort_complex(E), rel=1e-9)
     assert best.residual < 1e-12
+    noisy = random_model(8, 4, 1, 2)
+    L = control.lqe(noisy.A, np.eye(4), noisy.C, np.diag([1.0, 2, 3, 4]), np.diag([0.5, 2]))[0]
+    filtered = lqr(noisy.A.T, noisy.C.T, np.diag([1.0, 2, 3, 4]), np.diag([0.5, 2]), dual=True)
+    assert filtered.K.T == pytest.approx(np.array(L), rel=1e-9, abs=1e-9)
 
 
 def test_inputs_that_say_the_same_count_as_one():

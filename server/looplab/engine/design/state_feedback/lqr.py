@@ -92,19 +92,24 @@ def lqr(A: FloatArray, B: FloatArray, Q: FloatArray, R: FloatArray, dual: bool =
                 hint="give a weight to a state in which it shows",
             )
     try:
-        P = solve_continuous_are(A, B, Q, R)
-    except np.linalg.LinAlgError as error:
+        with np.errstate(all="ignore"):
+            P = solve_continuous_are(A, B, Q, R)
+            K = np.linalg.solve(R, B.T @ P)
+    except (np.linalg.LinAlgError, ValueError):
+        K = np.full((m, n), np.nan)
+    with np.errstate(all="ignore"):
+        poles = eigenvalues(A - B @ K) if np.isfinite(K).all() else np.full(n, np.nan)
+    if not (poles.real < 0).all():
         raise NoConvergence(
             "the Riccati equation has no solution to working precision",
             field="Q",
             hint="weights that are closer together",
-        ) from error
+        )
     P = 0.5 * (P + P.T)
-    K = np.linalg.solve(R, B.T @ P)
     terms = (A.T @ P + P @ A, K.T @ R @ K, Q)
     scale = max(float(np.abs(term).max(initial=0.0)) for term in terms) or 1.0
     residual = float(np.abs(terms[0] - terms[1] + terms[2]).max(initial=0.0)) / scale
-    return Regulator(K, P, eigenvalues(A - B @ K), residual)
+    return Regulator(K, P, poles, residual)
 
 
 def _weight(value: FloatArray, size: int, name: str, definite: bool) -> FloatArray:

@@ -10,13 +10,14 @@ from scipy.linalg import schur
 from scipy.linalg.lapack import ztrexc
 
 from looplab.engine.design.state_feedback.hidden import split_reachable, without_kept
-from looplab.engine.errors import InvalidInput
+from looplab.engine.errors import InvalidInput, NoConvergence
 from looplab.engine.state_space.eigenvalues import eigenvalues
 from looplab.engine.systems.polynomial import ComplexArray, FloatArray, pair_conjugates
 
 LARGEST_POLE = 1e6
 # Turns of all eigenvectors; most of what they can gain comes with the first few.
 SWEEPS = 10
+ENOUGH = 0.98
 
 
 @dataclass(frozen=True)
@@ -74,6 +75,8 @@ def place_poles(A: FloatArray, B: FloatArray, poles: Sequence[complex], dual: bo
     InvalidInput
         The poles are not n or not closed under conjugation, a mode that cannot be moved is not among them, or a pole
         is repeated more often than several inputs allow.
+    NoConvergence
+        The gain leaves double precision.
 
     References
     ----------
@@ -86,9 +89,16 @@ def place_poles(A: FloatArray, B: FloatArray, poles: Sequence[complex], dual: bo
     A_r, B_r, T, hidden = split_reachable(A, B)
     rest = without_kept(desired, hidden, dual)
     K = np.zeros((B.shape[1], n))
-    if rest:
-        K[:, : len(rest)] = _reachable_gain(A_r, B_r, rest)
-    K = K @ np.linalg.inv(T)
+    with np.errstate(all="ignore"):
+        if rest:
+            K[:, : len(rest)] = _reachable_gain(A_r, B_r, rest)
+        K = K @ np.linalg.inv(T)
+    if not np.isfinite(K).all():
+        raise NoConvergence(
+            "these poles cannot be placed to working precision",
+            field="poles",
+            hint="poles that are nearer to those of the plant, or other units",
+        )
     obtained = matched(eigenvalues(A - B @ K), np.array(desired, dtype=complex))
     wanted = np.array(desired, dtype=complex)
     error = float((np.abs(obtained - wanted) / np.maximum(1.0, np.abs(wanted))).max(initial=0.0))
@@ -180,8 +190,9 @@ def _several(A: FloatArray, B: FloatArray, poles: list[complex]) -> FloatArray:
             away = free[:, -1] + (1j * free[:, -2] if pole.imag > 0 else 0.0)
             _turn(X, poles, allowed, i, away)
         now = float(np.linalg.cond(X))
-        if now < condition:
-            best, condition = X.copy(), now
+        if now > ENOUGH * condition:
+            break
+        best, condition = X.copy(), now
     M = np.linalg.solve(best.T, (best * np.array(poles)).T).T.real
     return np.asarray(np.linalg.solve(Z[:m], U[:, :m].T @ (A - M)))
 
