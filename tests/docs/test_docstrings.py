@@ -31,6 +31,8 @@ FORMULAS = {
     "minimum_error",
     "shinskey",
     "optimal_tuning",
+    "pole_placement",
+    "smith_loop",
     "FOPDT",
     "SOPDT",
     "PID",

@@ -13,6 +13,8 @@ const PAGES = [
   { id: "labs", href: "/labs", label: "Labs" },
 ];
 
+const PEEK = 28;
+
 /** @type {Record<import("./theme.js").ThemeChoice, {icon: string, label: string, next: import("./theme.js").ThemeChoice}>} */
 const THEMES = {
   auto: { icon: "auto", label: "Theme: as the system has it", next: "light" },
@@ -47,9 +49,9 @@ export class SiteHeader extends HTMLElement {
         theme,
       ),
     );
-    // On a narrow screen the page that is shown may be out of sight.
+    // On a narrow screen the page that is shown may be out of sight; a piece of the next one tells that there is more.
     const here = /** @type {HTMLElement | null} */ (nav.querySelector("[aria-current]"));
-    if (here) nav.scrollLeft = here.offsetLeft + here.offsetWidth - nav.offsetLeft - nav.clientWidth;
+    if (here) nav.scrollLeft = here.offsetLeft + here.offsetWidth + PEEK - nav.offsetLeft - nav.clientWidth;
   }
 }
 

@@ -56,6 +56,7 @@ import { toInput } from "./format.js";
  */
 
 const MAX_TEXT = 500;
+const REGION_ROWS = 61;
 const POINTS = { moving: 200, rest: 400 };
 /** Per cent either way, as the server bounds the factors. @type {Record<MismatchAxis, {min: number, max: number}>} */
 export const MISMATCH = { K: { min: -95, max: 200 }, tau: { min: -80, max: 200 }, theta: { min: -100, max: 200 } };
@@ -76,10 +77,10 @@ export const LOOPS = {
 };
 
 export const SMITH_PRESETS = [
-  { name: "Long dead time", teaches: "Twice as long as the lag: what the predictor is made for.", model: "exp(-4s)/(2s+1)", Ms: 1.6 },
-  { name: "Short dead time", teaches: "A fifth of the lag: there is little to gain.", model: "exp(-s)/(5s+1)", Ms: 1.6 },
-  { name: "Integrating", teaches: "A load leaves an offset: the known failure.", model: "0.5 exp(-2s)/s", Ms: 1.5 },
-  { name: "Unstable", teaches: "The predictor hides the unstable pole: it cannot work.", model: "2 exp(-0.2s)/(s-1)", Ms: 2 },
+  { name: "Long dead time", teaches: "Twice as long as the lag: what the predictor is made for.", model: "exp(-4s)/(2s+1)", Ms: 1.6, signal: /** @type {const} */ ("setpoint") },
+  { name: "Short dead time", teaches: "A fifth of the lag: there is little to gain.", model: "exp(-s)/(5s+1)", Ms: 1.6, signal: /** @type {const} */ ("setpoint") },
+  { name: "Integrating", teaches: "A load leaves an offset: the known failure.", model: "0.5 exp(-2s)/s", Ms: 1.5, signal: /** @type {const} */ ("load") },
+  { name: "Unstable", teaches: "The predictor hides the unstable pole: it cannot work.", model: "2 exp(-0.2s)/(s-1)", Ms: 2, signal: /** @type {const} */ ("load") },
 ];
 
 /** @returns {SmithState} */
@@ -110,6 +111,7 @@ export async function judge(api, { model, mismatch, Ms, plane }, { moving, last 
     Ms_limit: Ms,
     plane,
     want: moving || known ? ["loops"] : ["loops", "region"],
+    region_rows: REGION_ROWS,
     points: moving ? POINTS.moving : POINTS.rest,
   });
   return answer.region ? { ...answer, regionKey: key } : { ...answer, region: last?.region ?? null, regionKey: last?.regionKey ?? "" };

@@ -88,13 +88,7 @@ export function mount(host, bench) {
     title: "Controller",
     help: HELP,
     figure: null,
-    words: (words, moving) => {
-      if (!moving || !words.firstChild) show(words);
-      else {
-        const formula = words.querySelector(".formula-block");
-        if (formula && bench.answer) formula.replaceWith(formulaBlock("C(s) =", bench.answer.design.C));
-      }
-    },
+    words: show,
     table() {
       const { equation } = bench.answer?.design ?? {};
       return equation ? { header: ["polynomial", "coefficients, highest power first"], rows: Object.entries(equation).map(([name, values]) => [name, values.map((value) => formatShort(value, 6)).join(", ")]) } : null;

@@ -3,7 +3,7 @@
 /** @import {DesignBench} from "../core/design-bench.js" */
 /** @import {SmithAnswer, SmithRow, SmithState} from "../core/smith.js" */
 
-import { formatAbsent, formatFixed, formatNumber, greek, sentence } from "../core/format.js";
+import { formatAbsent, formatFixed, formatNumber, greek, sentence, UNDEFINED } from "../core/format.js";
 import { LOOPS, pctOf } from "../core/smith.js";
 import { mountDesignPanel } from "../components/design-panel.js";
 import { h } from "../components/dom.js";
@@ -17,12 +17,13 @@ const HELP =
 /** @param {number | null | undefined} value @param {string | undefined} reason @param {(value: number) => string} [write] */
 const figure = (value, reason, write = (v) => formatNumber(v)) => (value == null ? formatAbsent(reason) : write(value));
 
-/** A stretch of factors in per cent. @param {[number, number] | null | undefined} stretch @param {number} farthest */
-function stretchText(stretch, farthest) {
-  if (!stretch) return "none";
+/** A stretch of factors in per cent. @param {SmithRow} row @param {"K" | "theta"} axis */
+function stretchText({ closed_loop_stable: stable, tolerates }, axis) {
+  const stretch = tolerates?.[axis];
+  if (!stretch) return stable ? UNDEFINED : "none";
   const [low, high] = stretch;
   const pct = (/** @type {number} */ factor) => `${pctOf(factor) >= 0 ? "+" : ""}${formatFixed(pctOf(factor), 0)}`;
-  if (high >= farthest) return low <= LOWEST ? "any" : `> ${pct(low)} %`;
+  if (high >= FARTHEST) return low <= LOWEST ? "any" : `> ${pct(low)} %`;
   return low <= LOWEST ? `< ${pct(high)} %` : `${pct(low)} … ${pct(high)} %`;
 }
 /** The ends of what the server looks at. */
@@ -42,8 +43,8 @@ const LINES = [
   { label: "Delay margin [s]", of: ({ margins }) => figure(margins?.["delay_margin"], margins?.reasons["delay_margin"]) },
   { label: "IAE, setpoint", of: ({ setpoint }) => figure(setpoint?.["IAE"], setpoint?.reasons["IAE"]) },
   { label: "IAE, load", of: ({ load }) => figure(load?.["IAE"], load?.reasons["IAE"]) },
-  { label: "Gain may be", of: ({ tolerates }) => stretchText(tolerates?.K, FARTHEST) },
-  { label: "Dead time may be", of: ({ tolerates }) => stretchText(tolerates?.theta, FARTHEST) },
+  { label: "Gain may be", of: (row) => stretchText(row, "K") },
+  { label: "Dead time may be", of: (row) => stretchText(row, "theta") },
 ];
 
 /** @param {HTMLElement} host @param {DesignBench<SmithState, SmithAnswer>} bench */

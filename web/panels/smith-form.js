@@ -17,7 +17,7 @@ const NAMES = { K: "Gain", tau: "Time constants", theta: "Dead time" };
 export function mount(host, bench) {
   const model = createExpressionField({ id: "smith-model", symbol: "G", hint: "With its dead time, as exp(-4s).", commit: (text) => bench.set({ model: text }) });
   const presets = SMITH_PRESETS.map((preset) =>
-    h("button", { type: "button", class: "button small", title: preset.teaches, onclick: () => bench.set({ model: preset.model, Ms: preset.Ms, mismatch: { K: 0, tau: 0, theta: 0 } }) }, preset.name),
+    h("button", { type: "button", class: "button small", title: preset.teaches, onclick: () => bench.set({ model: preset.model, Ms: preset.Ms, signal: preset.signal, mismatch: { K: 0, tau: 0, theta: 0 } }) }, preset.name),
   );
   /** @param {Record<string, string | number | boolean>} attributes @param {(value: number, moving: boolean) => void} onValue */
   const slider = (attributes, onValue) => {

@@ -57,7 +57,7 @@ export function polePlane({ wanted, poles, zeros, timeUnit }, theme, held) {
     traces: [
       guide("damping", { x: ends.flatMap(({ x }) => [x, 0, x, null]), y: ends.flatMap(({ y }) => [y, 0, -y, null]) }),
       guide("settling", { x: settling.flatMap(({ x }) => [x, x, null]), y: settling.flatMap(() => [...ranges.yaxis, null]) }),
-      dots("zero of the plant", zeros, { symbol: "circle-open", size: 10, line: { color: theme.ink, width: 2 } }),
+      dots("zero of the plant", zeros, { symbol: "circle-open", size: 10, color: theme.ink, line: { color: theme.ink, width: 2 } }),
       dots("pole of the plant", poles, { symbol: "x-thin", size: 11, line: { color: theme.ink, width: 2.25 } }),
       dots("wanted pole", wanted, { symbol: "square", size: 9, color: theme.signal["pole"] ?? theme.ink, line: { color: theme.paper, width: 1.5 } }),
     ],

@@ -33,7 +33,7 @@ from looplab.engine.design.stable_region import AXES
 from looplab.engine.errors import EngineError, InvalidInput, RuleNotApplicable
 from looplab.engine.loop import PID
 from looplab.engine.systems import TransferFunction
-from looplab.engine.tuning import ComparedLoop, compare, optimal_tuning, perturbed_plant, plant_horizon
+from looplab.engine.tuning import ComparedLoop, OptimalTuning, compare, optimal_tuning, perturbed_plant, plant_horizon
 from looplab.labs.text import render_math
 from looplab.schemas import AnyPID, Model, System, located
 
@@ -88,9 +88,14 @@ def _attempt(find: Callable[[], PID]) -> PID | str:
         return error.message
 
 
+def _best(model: TransferFunction, type: Literal["PI", "PID"], Ms: float) -> OptimalTuning:
+    """What the predictor is compared with; cached by content."""
+    return optimal_tuning(model, type, "IAE", "load", Ms)
+
+
 def _contestants(request: SmithRequest, model: TransferFunction) -> _Contestants:
     plain: dict[Name, PID | str] = {
-        name: _attempt(lambda name=name: optimal_tuning(model, name, "IAE", "load", request.Ms_limit).controller)  # type: ignore[misc]
+        name: _attempt(lambda name=name: _best(model, name, request.Ms_limit).controller)  # type: ignore[misc]
         for name in ("PI", "PID")
     }
     if request.controller is not None:
@@ -112,7 +117,7 @@ def _contestants(request: SmithRequest, model: TransferFunction) -> _Contestants
                 field="controller",
                 hint="give one, or allow a larger Ms_limit",
             ) from error
-        how = f"the settings of the plain PI, because {error.message}"
+        how = "the settings of the plain PI, for SIMC has none for this model"
         return _Contestants({"smith": fallback, **plain}, {"how": how, "tau_c": None, "Ms": None, "on_limit": None})
     how = (
         f"SIMC for the model without its dead time, tau_c = {found.tau_c:.4g}: the fastest with Ms = {found.Ms:.4g} "
@@ -211,11 +216,11 @@ def _region(case: _Case, controllers: dict[Name, PID | str]) -> dict[str, Any]:
 
 def _nominal(name: Name, controller: PID | str, request: SmithRequest, model: TransferFunction) -> float | None:
     """Ms without mismatch: what the loops were tuned to."""
-    if isinstance(controller, str) or (model.poles.real > 0).any():
+    if isinstance(controller, str):
         return None
-    if name == "smith":
-        return nominal_peak(controller, model)
-    return request.Ms_limit
+    if name != "smith":
+        return _best(model, name, request.Ms_limit).Ms
+    return None if (model.poles.real > 0).any() else nominal_peak(controller, model)
 
 
 def _horizon(model: TransferFunction) -> float:

@@ -115,12 +115,10 @@ def smith_loop(
     found: Margins = delay_margins(L)
     if not found.closed_loop_stable and model.origin_order == 1:
         held = delay_verdict(feedback(L))
-        if held.verdict == "marginal" and "origin" in held.because:
-            room = {
-                "delay_margin": min(np.mod(np.radians(c.PM_deg), 2 * np.pi) / c.omega for c in found.gain_crossovers)
-            }
+        if held.verdict == "marginal" and "origin" in held.because and found.gain_crossovers:
+            room = min(float(np.mod(np.radians(c.PM_deg), 2.0 * np.pi)) / c.omega for c in found.gain_crossovers)
             reasons = {name: why for name, why in found.reasons.items() if name != "delay_margin"}
-            found = replace(found, closed_loop_stable=True, reasons=reasons, **room)
+            found = replace(found, closed_loop_stable=True, delay_margin=room, reasons=reasons)
     stable = found.closed_loop_stable
     end = min(horizon, _followed(model))
     steps = step_response(control_loop(P, predictor), end, max(20, round(points * end / horizon)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.optimize import brentq
@@ -88,6 +89,7 @@ def _primary(known: KnownPlant, tau_c: float) -> PID:
     return PID(found.Kc, found.tau_I)
 
 
+@lru_cache(maxsize=32)
 def smith_tuning(model: TransferFunction, Ms: float) -> SmithTuning:
     r"""The fastest SIMC controller for the model without its dead time that keeps the predictor's loop within Ms.
 
