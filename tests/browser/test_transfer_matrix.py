@@ -11,7 +11,7 @@ from playwright.sync_api import Page, expect
 def test_a_transfer_matrix_has_a_card_curves_and_a_way_to_the_workbench(page: Page):
     page.goto("/plants")
     shelf = page.locator(".plants-shelf", has=page.get_by_role("heading", name="Columns"))
-    card = shelf.locator(".plant-tile", has_text="Ethanol-water")
+    card = shelf.locator(".plant-tile", has_text="Ethanol-water column as a transfer matrix")
     expect(card.locator("svg")).to_be_attached()
     card.get_by_role("link").click()
     panel = page.locator("#panel-transfer-matrix")

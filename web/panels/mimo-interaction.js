@@ -50,8 +50,10 @@ export function mount(host, store, api) {
     const margin = lost === null ? "" : lost === 0 ? ", and leaves its phase margin as it is" : `, and ${lost < 0 ? "takes" : "adds"} ${Math.abs(lost)}° ${lost < 0 ? "from" : "to"} its phase margin`;
     // With a decoupler the loop's own process is no longer its entry.
     const why = relative === null || store.get().decoupler !== "none" ? "" : `, its own over λ = ${formatNumber(relative)}`;
+    const same = seen !== null && own !== null && Math.abs(seen - own) < 1e-6 * Math.abs(own);
+    const change = same ? `leaves the gain that loop ${loop} sees at ${formatNumber(own)}` : `changes the gain that loop ${loop} sees from ${formatNumber(own)} to ${formatNumber(seen)}${why}`;
     const unsafe = others && !others.stable;
-    const told = unsafe ? `The other loops alone are ${others.verdict}: with them closed, loop ${loop} is what is left to hold the process.` : seen !== null && own ? `Closing the others changes the gain that loop ${loop} sees from ${formatNumber(own)} to ${formatNumber(seen)}${why}${margin}.` : sentence(reasons?.effective_gain);
+    const told = unsafe ? `The other loops alone are ${others.verdict}: with them closed, loop ${loop} is what is left to hold the process.` : seen !== null && own ? `Closing the others ${change}${margin}.` : sentence(reasons?.effective_gain);
     words.replaceChildren(
       h("p", { class: "finding" }, told),
       valueTable(

@@ -77,7 +77,7 @@ export function mount(host, store, api, { onAnswer }) {
       yesNo(each.acceptable, { yes: "fine", no: "avoid" }),
       formatNumber(each.niederlinski),
       formatNumber(each.rga_number),
-      each.faults.length > 0 ? greek(sentence(each.faults[0])) : "",
+      each.faults.length > 0 ? `${greek(each.faults[0])}.` : "",
     ]);
     const more = answer.pairings.length - rows.length;
     list.replaceChildren(

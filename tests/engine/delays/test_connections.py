@@ -24,6 +24,7 @@ from looplab.engine.delays import (
     summing,
 )
 from looplab.engine.delays.resolvent import transfer_and_slope
+from looplab.engine.delays.structure import channel, pruned
 from looplab.engine.errors import IllPosedLoop, InvalidInput
 from looplab.engine.state_space import StateSpaceModel
 from looplab.engine.systems import TransferFunction, parse_transfer_function
@@ -212,3 +213,16 @@ def test_malformed_systems_are_refused() -> None:
             DelaySystem(*(np.array(a, dtype=float) for a in arrays))
     with pytest.raises(InvalidInput):
         append()
+
+
+def test_pruning_takes_out_what_is_idle_and_rounds_nothing():
+    lag, late = (
+        DelaySystem.from_transfer_function(parse_transfer_function(text)) for text in ("2/(3s+1)", "exp(-s)/(s+2)^2")
+    )
+    idle = DelaySystem.from_transfer_function(parse_transfer_function("exp(-5s)/s"))
+    whole = append(lag, late, idle)
+    one = channel(whole, [1], [1])
+    assert one == late
+    # In a loop each needs the other: nothing may go.
+    loop = connect(append(lag, late), [[0, -1], [1, 0]], [[1], [0]], [[0, 1]])
+    assert pruned(loop) == loop

@@ -105,7 +105,7 @@ def test_what_has_no_relative_gain_is_refused():
 
 
 def test_singular_values_in_print():
-    # Skogestad and Postlethwaite, 2nd ed., example 3.3 and sec. 3.4.
+    # Skogestad and Postlethwaite, 2nd ed., secs. 3.3 and 3.4.
     found = singular_values(np.array([LV_COLUMN]))
     assert found.values[0] == pytest.approx([197.2, 1.39], abs=0.05)
     assert found.condition_number[0] == pytest.approx(141.7, abs=0.05)
