@@ -65,7 +65,9 @@ def test_a_nonlinear_plant_is_controlled_by_what_was_read_off_it(page: Page):
     page.goto("/experiments?plant=library&id=tanks-in-series&pick=simc.PI&change=0.05")
     expect(page.locator(".run-says")).to_contain_text("the true plant gives", timeout=SLOW)
     page.get_by_role("button", name="Numbers of Promised and true as a table").click()
-    last = page.locator("#panel-true-loop tbody tr").last.locator("td").all_inner_texts()
+    # The promise may have more samples, at the corners that its dead time makes.
+    rows = page.locator("#panel-true-loop tbody tr")
+    last = rows.filter(has_not_text="—").last.locator("td").all_inner_texts()
     # From 0.5 mol/l a step of 0.05, kept by integral action; in the feed as much, for the tanks have a gain of one.
     assert [float(last[k]) for k in (1, 2)] == pytest.approx([0.55, 0.55], rel=2e-3)
 

@@ -6,7 +6,8 @@
 import { toInput } from "./format.js";
 import { round125 } from "./plant-pace.js";
 
-const CONTROL_POINTS = 601;
+/** Samples of the loop, on the model and on the plant alike. */
+export const LOOP_POINTS = 1000;
 /** Samples of held noise over a run. */
 const NOISE_VALUES = 300;
 
@@ -88,7 +89,7 @@ export function controlRequest({ plant, experiment }, about, tuned, horizon) {
     operating_point: plant.point || null,
     initial: about.rest ?? {},
     horizon,
-    points: CONTROL_POINTS,
+    points: LOOP_POINTS,
     loops: [
       {
         output: plant.output,

@@ -5,9 +5,8 @@
 /** @import {About, Model, Setting} from "./experiment-types.js" */
 /** @import {TuneSetting} from "./types.js" */
 
-import { controllerOf, controlRequest, filledIn, systemOf } from "./experiment-requests.js";
+import { controllerOf, controlRequest, filledIn, LOOP_POINTS, systemOf } from "./experiment-requests.js";
 
-const POINTS = 1000;
 const METRICS = /** @type {const} */ (["overshoot_pct", "t_rise", "t_settle", "IAE", "TV"]);
 const MARGINS = /** @type {const} */ (["GM_dB", "PM_deg", "Ms"]);
 
@@ -46,7 +45,7 @@ function sidesOf({ responses, setpoint, load, margins, closed_loop_stable }, { s
  */
 export async function runBoth(api, setting, about, model, tuned) {
   const entries = [{ label: "tuned", controller: controllerOf(tuned) }];
-  const ask = (/** @type {any} */ plant, /** @type {number | null} */ horizon) => api.analyse("compare", { plant, entries, horizon, points: POINTS });
+  const ask = (/** @type {any} */ plant, /** @type {number | null} */ horizon) => api.analyse("compare", { plant, entries, horizon, points: LOOP_POINTS });
   const library = about !== null && setting.plant.kind === "library";
   const at = { size: library ? filledIn(setting.experiment, setting.plant, about).change : 1, y: library ? about.level : 0, u: library ? about.u0 : 0 };
   /** @type {Sides | null} */
@@ -72,7 +71,10 @@ export async function runBoth(api, setting, about, model, tuned) {
     horizon ||= 15 * about.scale;
     const answer = await api.workOut(setting.plant.id, "control", controlRequest(setting, about, tuned, horizon));
     const [{ metrics, output, u }] = answer.loops;
+    // Its TV begins after the first jump of u, that of the promise before it: the two are no pair.
     const { reasons, ...values } = metrics;
+    values.TV = null;
+    if (promised?.setpoint) promised.setpoint.values["TV"] = null;
     true_ = { setpoint: { curve: { t: answer.t, y: answer.outputs[output], u }, stable: null, values, reasons, cut: answer.truncated_reason }, load: null };
   }
   return { promised, true_, reason, horizon };

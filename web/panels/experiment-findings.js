@@ -23,7 +23,7 @@ export function mount(step, bench) {
     const { about } = bench;
     const exact = about?.ultimate;
     const unit = about?.timeUnit ?? "s";
-    return valueTable("Ultimate point", ["", by, "frequency analysis", "off by"], [
+    return valueTable("Ultimate point; exact is that of frequency analysis", ["", by, "exact", "off by"], [
       ["Ku", formatNumber(Ku, 4), formatNumber(exact?.Ku, 4), off(Ku, exact?.Ku)],
       ["Pu", formatWithUnit(Pu, unit, 4), formatWithUnit(exact?.Pu, unit, 4), off(Pu, exact?.Pu)],
     ]);

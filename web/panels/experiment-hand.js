@@ -150,10 +150,10 @@ export function mount(step, bench, api) {
     const last = Math.max(since, swings.points.t.at(-1) ?? -Infinity);
     const dead = found.verdict === "too few" && loop.end - last > DEAD * period();
     const { word: say, next: then } = dead ? DIED_OUT : VERDICTS[found.verdict];
-    said.dataset["verdict"] = found.verdict.replace(" ", "-");
     const held = loop.limited > loop.end - 2 * (found.Pu ?? period());
+    said.dataset["verdict"] = runaway ? "growing" : held ? "held" : found.verdict.replace(" ", "-");
     take.disabled = found.verdict !== "sustained" || held;
-    setText(word, runaway ? "run away" : say);
+    setText(word, runaway ? "run away" : held && found.verdict === "sustained" ? "held by the limit" : say);
     setText(figures, found.Pu === null ? "" : `period ${formatWithUnit(found.Pu, unit())}, amplitude ${formatNumber(found.amplitude)}, each swing ${formatNumber((found.ratio ?? 0) * 100)} % of the one a period before`);
     setText(next, runaway ? "The swings have left all bounds. Begin again with a smaller gain." : held ? "u is at its limit: the swings are held by the limit, not by the gain. Lower Kc." : then);
   }
