@@ -18,7 +18,10 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class _PerGain:
-    """What a moved gain k leaves as it is: base, g and b_y of the equations as a + k b, in balanced states."""
+    """What a moved gain k leaves as it is: the rows of A0, b_y, g and u0 of the equations as ``fixed + k moved``.
+
+    Both have the shape (n + 3, n), in balanced states.
+    """
 
     def __init__(self, plant: TransferFunction, unit: TransferFunction, weight: float, size: float) -> None:
         P, C = realize(plant), realize(unit)
@@ -26,40 +29,37 @@ class _PerGain:
         n = p + c + 2
         self.starts = np.zeros((n, 2))
         self.starts[-2, 0] = self.starts[-1, 1] = 1.0
-        self.u = np.zeros(n)
-        self.u[p : p + c] = C.C
-        self.u[n - 2] = C.D + weight
-        self.base, self.base_k = np.zeros((2, n, n))
-        self.base[:p, :p] = P.A
-        self.base[p : p + c, p : p + c] = C.A
-        self.base[p : p + c, n - 2] = C.B
-        self.base[:p, n - 1] = P.B
-        self.base_k[:p] = P.B[:, None] * self.u
-        self.b_y, self.b_y_k = np.zeros((2, n))
-        self.b_y[p : p + c] = -C.B
-        self.b_y_k[:p] = -P.B * C.D
-        # Plant output before its dead time: g x / (1 + Dp Dc z).
-        self.g = np.zeros(n)
-        self.g[:p] = P.C
-        self.g[n - 1] = P.D
-        self.g_k = P.D * self.u
         self.Dc, self.DpDc = C.D, P.D * C.D
-        self._balance(n - 2, size)
+        self.fixed, self.moved = np.zeros((2, n + 3, n))
+        base, (b_y, g, _) = self.fixed[:n], self.fixed[n:]
+        base_k, (b_y_k, g_k, u) = self.moved[:n], self.moved[n:]
+        u[p : p + c] = C.C
+        u[n - 2] = C.D + weight
+        base[:p, :p] = P.A
+        base[p : p + c, p : p + c] = C.A
+        base[p : p + c, n - 2] = C.B
+        base[:p, n - 1] = P.B
+        base_k[:p] = P.B[:, None] * u
+        b_y[p : p + c] = -C.B
+        b_y_k[:p] = -P.B * C.D
+        # Plant output before its dead time: g x / (1 + Dp Dc z).
+        g[:p] = P.C
+        g[n - 1] = P.D
+        g_k[:] = P.D * u
+        self._balance(n, size)
 
-    def _balance(self, states: int, k: float) -> None:
+    def _balance(self, n: int, k: float) -> None:
         """Scale the states so that rows and columns of A are of one size: exponentials keep their digits."""
+        states = n - 2
         if not states:
             return
-        b_y, g = self.b_y + k * self.b_y_k, self.g + k * self.g_k
-        size = np.abs(self.base + k * self.base_k) + np.abs(b_y)[:, None] * np.abs(g)
+        at_k = self.fixed + k * self.moved
+        size = np.abs(at_k[:n]) + np.abs(at_k[n])[:, None] * np.abs(at_k[n + 1])
         _, _, _, scale, _ = dgebal(size[:states, :states], scale=1, permute=0)
-        for matrix in (self.base, self.base_k):
-            matrix[:states] /= scale[:, None]
-            matrix[:, :states] *= scale
-        for column in (self.b_y, self.b_y_k):
-            column[:states] /= scale
-        for row in (self.u, self.g, self.g_k):
-            row[:states] *= scale
+        for part in (self.fixed, self.moved):
+            part[:states] /= scale[:, None]
+            part[[*range(n), n + 1, n + 2], :states] *= scale
+            part[n, :states] /= scale
 
 
 @lru_cache(maxsize=64)
@@ -72,6 +72,14 @@ class LoopEquations:
 
     Attributes
     ----------
+    base, b_y : ndarray, shapes (n, n) and (n,)
+        A(z) = base + b_y y(z).
+    g : ndarray, shape (n,)
+        y(z) = z g/(1 + Dp Dc z) is the row of the plant's output.
+    u0 : ndarray, shape (n,)
+        The row of the controller's output is u0 - Dc y(z).
+    Dc, DpDc : float
+        Direct terms of the controller and of the loop.
     starts : ndarray, shape (n, 2)
         Initial states of the setpoint and load steps.
     """
@@ -81,11 +89,11 @@ class LoopEquations:
         # The states are balanced for gains of this size: a power of eight.
         power = 3 * round(frexp(k)[1] / 3) if k else 0
         unit = _per_gain(loop.plant, loop.C.unit, loop.feedforward / k if k else 0.0, power)
-        self.starts = unit.starts
-        self.base = unit.base + k * unit.base_k
-        self.u0 = k * unit.u
-        self.b_y = unit.b_y + k * unit.b_y_k
-        self.g = unit.g + k * unit.g_k
+        every = unit.moved * k
+        every += unit.fixed
+        n = every.shape[1]
+        self.starts, self.base = unit.starts, every[:n]
+        self.b_y, self.g, self.u0 = every[n], every[n + 1], every[n + 2]
         self.Dc, self.DpDc = k * unit.Dc, k * unit.DpDc
 
     def at(self, z: ComplexArray) -> tuple[ComplexArray, ComplexArray]:

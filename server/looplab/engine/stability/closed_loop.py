@@ -50,7 +50,8 @@ class Verdict:
 
 def _sorted(poles: ComplexArray) -> ComplexArray:
     """Rightmost first; of those above one another the slowest first."""
-    return poles[np.lexsort((-poles.imag, np.abs(poles.imag), -np.round(poles.real, 9)))]
+    ordered = sorted(poles.tolist(), key=lambda p: (-round(p.real, 9), abs(p.imag), -p.imag))
+    return np.array(ordered, dtype=complex)
 
 
 def _dead_time_poles(loop: FeedbackLoop) -> ComplexArray:
