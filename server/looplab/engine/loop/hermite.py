@@ -72,7 +72,7 @@ class HermiteCurves:
     def __init__(self, t: FloatArray, y: FloatArray, dy: FloatArray) -> None:
         self.t, self.y = t, y
         self.h = h = t[1:] - t[:-1]
-        # Coefficients of a + b x + c x^2 + d x^3 for x in [0, 1] in each piece; b is the slope at its start. Beside them
+        # Coefficients of a + b x + c x^2 + d x^3 for x in [0, 1] in each piece; b is the slope at its start. Then come
         # the slope at its end and the chord.
         work = np.empty((6, y.shape[0], h.size))
         self.cubics = work[:4]
