@@ -10,13 +10,37 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 Index = npt.NDArray[np.intp]
 
-# A piece is not split at its sign change where y is smaller than this fraction of its largest mean.
-SETTLED = 1e-12
-
 # From the coefficients of a cubic p: the integrals over [0, 1] of p and of x p, and four numbers whose squares add up
 # to that of p^2 (the Cholesky factor of the Hilbert matrix).
 _POWERS = 1.0 / (np.arange(1.0, 5.0) + np.arange(2.0)[:, None])
 _TO_INTEGRALS = np.vstack([_POWERS, np.linalg.cholesky(1.0 / (np.arange(1.0, 5.0) + np.arange(4.0)[:, None])).T])
+# From the same: p(1); the coefficients of p and p' by powers of x; those of the integrals of p and x p up to x.
+_AT_END = np.ones((1, 4))
+_WITH_SLOPE = np.stack([np.eye(4), np.diag([1.0, 2.0, 3.0], 1)], axis=1).reshape(8, 4)
+_UP_TO = np.stack([np.diag(row) for row in _POWERS], axis=1).reshape(8, 4)
+_FOR_ROOTS = np.vstack([_AT_END, _WITH_SLOPE, _UP_TO])
+
+
+def _before_root(cubics: FloatArray) -> FloatArray:
+    """Integrals of p and x p from 0 to the root in [0, 1] of cubics p that change sign there once, shape (2, m)."""
+    forms = _FOR_ROOTS @ cubics
+    start = cubics[0]
+    x = start / (start - forms[0])
+    a, b, c, d = forms[1:9].reshape(4, 2, -1)
+    for _ in range(2):
+        value, slope = a + x * (b + x * (c + x * d))
+        step = value / slope
+        x = x - step
+    # An error of x counts only by its square here; where two steps are not enough one careful root is found.
+    safe = np.abs(step) <= 1e-4
+    safe &= np.abs(x - 0.5) <= 0.5
+    if not safe.all():
+        for i in (~safe).nonzero()[0].tolist():
+            x[i] = _cubic_root(*cubics[:, i].tolist())
+    a, b, c, d = forms[9:].reshape(4, 2, -1)
+    before = x * (a + x * (b + x * (c + x * d)))
+    before[1] *= x
+    return np.asarray(before)
 
 
 def _cubic_root(a: float, b: float, c: float, d: float) -> float:
@@ -49,15 +73,6 @@ def _cubic_root(a: float, b: float, c: float, d: float) -> float:
     return x
 
 
-def _split_integrals(a: float, b: float, c: float, d: float) -> tuple[float, float]:
-    """Integrals of |p| and x |p| over [0, 1] for p = a + b x + c x^2 + d x^3, which changes sign there once."""
-    x = _cubic_root(a, b, c, d)
-    whole, moment = a + b / 2.0 + c / 3.0 + d / 4.0, a / 2.0 + b / 3.0 + c / 4.0 + d / 5.0
-    before = x * (a + x * (b / 2.0 + x * (c / 3.0 + x * d / 4.0)))
-    moment_before = x * x * (a / 2.0 + x * (b / 3.0 + x * (c / 4.0 + x * d / 5.0)))
-    return abs(before) + abs(whole - before), abs(moment_before) + abs(moment - moment_before)
-
-
 def _turning_points(b: FloatArray, c: FloatArray, d: FloatArray) -> FloatArray:
     """Roots in [0, 1] of the slopes b + 2 c x + 3 d x^2, which change sign there."""
     # At the root the slope moves to the sign that b does not have; of its two forms the one without cancellation.
@@ -72,33 +87,28 @@ class HermiteCurves:
     def __init__(self, t: FloatArray, y: FloatArray, dy: FloatArray) -> None:
         self.t, self.y = t, y
         self.h = h = t[1:] - t[:-1]
-        # Coefficients of a + b x + c x^2 + d x^3 for x in [0, 1] in each piece; b is the slope at its start. Then come
-        # the slope at its end and the chord.
-        work = np.empty((6, y.shape[0], h.size))
-        self.cubics = work[:4]
-        a, m0, c, d, m1, chord = work
-        a[...] = y[:, :-1]
+        # Coefficients of a + b x + c x^2 + d x^3 for x in [0, 1] in each piece.
+        self.cubics = np.empty((4, y.shape[0], h.size))
+        _, m0, c, d = self.cubics
+        self.cubics[0] = y[:, :-1]
         np.multiply(dy[:, :-1], h, out=m0)
-        np.multiply(dy[:, 1:], h, out=m1)
-        np.subtract(y[:, 1:], a, out=chord)
-        np.subtract(chord, m0, out=c)
-        np.subtract(m1, chord, out=d)
-        d -= c
-        c -= d
-        self._chord = chord
+        m1 = dy[:, 1:] * h
+        self._chord = chord = y[:, 1:] - y[:, :-1]
+        np.add(m0, m1, out=d)
+        d -= 2.0 * chord
         # The slope at the right end is the next sample's: at a kink it belongs to the next piece, so the cubic is
         # kept only where it agrees with the chord; elsewhere the parabola through both ends and the left slope.
-        first, _, third, last, across = np.abs(work[1:])
-        first += last
-        np.maximum(first, across, out=first)
-        third *= 2.0
-        kink = third > first
+        size = np.abs(m0)
+        size += np.abs(m1)
+        np.maximum(size, np.abs(chord), out=size)
+        kink = np.abs(d) > 0.5 * size + 1e-300
         self._corner: npt.NDArray[np.bool_] | None = None
         if kink.any():
             m1[kink] = (2.0 * chord - m0)[kink]
             d[kink] = 0.0
-            c[kink] = (chord - m0)[kink]
             self._corner = m1[:, :-1] * m0[:, 1:] < 0
+        np.subtract(chord, m0, out=c)
+        c -= d
         self._turning = m0 * m1 < 0
 
     @cached_property
@@ -146,14 +156,15 @@ class HermiteCurves:
         parts = _TO_INTEGRALS @ cubics
         whole = parts[:2]
         above = self.y[:count] > 0.0
-        np.abs(whole, out=whole)
         flat = (above[:, 1:] != above[:, :-1]).ravel().nonzero()[0]
         if flat.size:
-            # What is below rounding of the whole, as where a response has settled, may stay as it is.
-            flat = flat[whole[0].take(flat) + np.abs(cubics[0].take(flat)) > SETTLED * whole[0].max()]
-            split = [_split_integrals(*cubic) for cubic in cubics.take(flat, axis=1).T.tolist()]
-            if split:
-                whole[:, flat] = np.array(split).T
+            with np.errstate(all="ignore"):
+                before = _before_root(cubics.take(flat, axis=1))
+            split = np.abs(before)
+            split += np.abs(whole.take(flat, axis=1) - before)
+        np.abs(whole, out=whole)
+        if flat.size:
+            whole[:, flat] = split
         np.square(parts[2:], out=parts[2:])
         parts = parts.reshape(6, count, m)
         ia, _, *squares = (parts @ self.h).tolist()
