@@ -17,7 +17,8 @@ function makeBubble() {
   bubble = h("div", { class: "hint", popover: "manual", role: "tooltip", id: "hint-bubble" });
   bubble.addEventListener("pointerenter", () => clearTimeout(leaving));
   bubble.addEventListener("pointerleave", hideSoon);
-  document.body.append(bubble);
+  // In the main landmark, as all that a screen reader is to find on a page.
+  (document.querySelector("main") ?? document.body).append(bubble);
   document.addEventListener("keydown", (event) => {
     if (event.key === "Escape") hide();
   });
