@@ -170,7 +170,7 @@ def test_what_has_no_ultimate_gain_says_why(page: Page):
 
 
 LIVE = """async ({A, B, C, theta, Kc, step, until, then}) => {
-  const { createProportionalLoop } = await import("/static/core/proportional-loop.js");
+  const { createProportionalLoop } = await import("/static/core/experiments/proportional-loop.js");
   const loop = createProportionalLoop({ A, B, C, theta }, { Kc, step });
   loop.until(until);
   if (then) { loop.Kc = then; loop.until(2 * until); }
@@ -202,9 +202,9 @@ def test_the_live_loop_is_the_exact_one(page: Page):
 def test_lines_and_swings_read_what_they_are_made_of(page: Page):
     page.goto("/api")
     read = page.evaluate("""async () => {
-      const { modelOfLines } = await import("/static/core/construction.js");
-      const { lagResponse } = await import("/static/core/lag-response.js");
-      const { createSwings, judge } = await import("/static/core/swings.js");
+      const { modelOfLines } = await import("/static/core/experiments/construction.js");
+      const { lagResponse } = await import("/static/core/experiments/lag-response.js");
+      const { createSwings, judge } = await import("/static/core/experiments/swings.js");
       const t = Array.from({ length: 4001 }, (_, k) => k / 50);
       const record = { t, u: t.map((s) => (s >= 5 ? 3 : 1)), u_before: 1 };
       const y = lagResponse({ K: 2, tau: 4, theta: 1.5 }, record, 10);

@@ -3,7 +3,7 @@
  * Tied to the analyses it shows, not to the answers about the loop. What went wrong, and what to do, stands in it.
  */
 
-/** @import {Analysis} from "../core/analysis.js" */
+/** @import {Analysis} from "../core/workbench/analysis.js" */
 /** @import {Store} from "../core/store.js" */
 /** @import {Figure, Ranges, Table, Theme} from "../core/types.js" */
 /** @import {FigureLike, LegendItem} from "./panel-frame.js" */

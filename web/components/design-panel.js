@@ -1,6 +1,6 @@
 /** A panel of a design page: drawn again when the answer comes, from what is known while something moves. */
 
-/** @import {DesignBench} from "../core/design-bench.js" */
+/** @import {DesignBench} from "../core/design/bench.js" */
 /** @import {Figure, Ranges, Table, Theme} from "../core/types.js" */
 /** @import {FigureLike, LegendItem} from "./panel-frame.js" */
 

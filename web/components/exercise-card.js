@@ -3,7 +3,7 @@
  * The kind of answer is the body's matter; what an answer is worth is the server's.
  */
 
-/** @import {LabExercise, Status, Verdict} from "../core/lab-types.js" */
+/** @import {LabExercise, Status, Verdict} from "../core/lab/types.js" */
 
 import { h, set, setText, uniqueId } from "./dom.js";
 import { choiceBody } from "./exercise-choice.js";

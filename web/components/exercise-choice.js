@@ -1,6 +1,6 @@
 /** The body of an exercise that offers answers to choose from; the feedback stands under the one that was picked. */
 
-/** @import {LabExercise, Verdict} from "../core/lab-types.js" */
+/** @import {LabExercise, Verdict} from "../core/lab/types.js" */
 
 import { h, uniqueId } from "./dom.js";
 import { showHtml } from "./rich-text.js";

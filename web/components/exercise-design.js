@@ -1,6 +1,6 @@
 /** The body of a design: what stands on the bench is the answer; each specification is drawn as measured against its limit. */
 
-/** @import {Check, LabExercise, LabSpecification, Settings, Verdict} from "../core/lab-types.js" */
+/** @import {Check, LabExercise, LabSpecification, Settings, Verdict} from "../core/lab/types.js" */
 
 import { h, setText } from "./dom.js";
 import { icon } from "./icons.js";

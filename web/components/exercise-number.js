@@ -1,6 +1,6 @@
 /** The body of an exercise that asks for numbers: a field each, with its feedback beneath. */
 
-/** @import {LabExercise, LabField, Verdict} from "../core/lab-types.js" */
+/** @import {LabExercise, LabField, Verdict} from "../core/lab/types.js" */
 
 import { h, set, uniqueId } from "./dom.js";
 import { showMath } from "./mathml.js";

@@ -1,6 +1,6 @@
 /** The body of an exercise that asks for a transfer function: typed, typeset as it is understood, compared as a system. */
 
-/** @import {LabExercise, Verdict} from "../core/lab-types.js" */
+/** @import {LabExercise, Verdict} from "../core/lab/types.js" */
 
 import { h, set, uniqueId } from "./dom.js";
 import { showMath } from "./mathml.js";

@@ -3,7 +3,7 @@
 /** @import {LabSummary} from "../core/types.js" */
 
 import { createApi } from "../core/api.js";
-import { localStore, readProgress, solvedIn } from "../core/lab-progress.js";
+import { localStore, readProgress, solvedIn } from "../core/lab/progress.js";
 import { h } from "./dom.js";
 
 export class LabsList extends HTMLElement {

@@ -3,7 +3,7 @@
  * set to something else. The panel itself says what to ask and what to show.
  */
 
-/** @import {PlantBench} from "../core/plant-bench.js" */
+/** @import {PlantBench} from "../core/plant/bench.js" */
 /** @import {Figure, Ranges, Table, Theme} from "../core/types.js" */
 /** @import {FigureLike, LegendItem} from "./panel-frame.js" */
 

@@ -1,6 +1,6 @@
 /** `<plants-gallery>`: the plants of this server as cards with their drawings, shelf by shelf, with a search. */
 
-/** @import {PlantSummary} from "../core/plant-types.js" */
+/** @import {PlantSummary} from "../core/plant/types.js" */
 
 import { createApi } from "../core/api.js";
 import { h, setText, uniqueId } from "./dom.js";

@@ -3,7 +3,7 @@
 /** @import {Api} from "../core/api.js" */
 /** @import {Store} from "../core/store.js" */
 
-import { takesRow } from "../core/plots.js";
+import { takesRow } from "../core/workbench/plots.js";
 import { h } from "./dom.js";
 
 /** @typedef {(host: HTMLElement, store: Store, api: Api) => () => void} Mount */

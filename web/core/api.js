@@ -69,19 +69,19 @@ export function createApi({ base = "/api/v1", fetch = globalThis.fetch.bind(glob
     rootLocus: (request) => call("/root-locus", request),
     /** @param {{plant?: System, model?: object, ultimate?: object, relay?: object, rules?: string[], types?: string[]}} request @returns {Promise<TuneAnswer>} */
     tune: (request) => call("/tune", request),
-    /** @returns {Promise<{rules: import("./analysis-types.js").RuleEntry[]}>} */
+    /** @returns {Promise<{rules: import("./workbench/analysis-types.js").RuleEntry[]}>} */
     rules: () => call("/tune/rules"),
     /** One analysis. @param {"response" | "laplace" | "routh" | "stability" | "state-space" | "approximate" | "compare" | "gain-map" | "tune/optimal" | "tune/trade-off" | "mimo/rga" | "mimo/simulate" | "mimo/interaction" | "mimo/decoupler" | "mimo/tune" | "state-feedback" | "state-feedback/simulate" | "state-feedback/region" | "pole-placement" | "smith" | "limits" | "bode-integral" | "spectrum"} route @param {object} request @returns {Promise<any>} */
     analyse: async (route, request) => decodeArrays(await call(`/${route}`, request)),
-    /** @returns {Promise<{plants: import("./plant-types.js").PlantSummary[]}>} */
+    /** @returns {Promise<{plants: import("./plant/types.js").PlantSummary[]}>} */
     plants: () => call("/plants"),
-    /** @param {string} id @returns {Promise<import("./plant-types.js").PlantAnswer>} */
+    /** @param {string} id @returns {Promise<import("./plant/types.js").PlantAnswer>} */
     plant: (id) => call(`/plants/${encodeURIComponent(id)}`),
     /** One thing worked out for a plant. @param {string} id @param {string} route @param {object} request @returns {Promise<any>} */
     workOut: (id, route, request) => call(`/plants/${encodeURIComponent(id)}/${route}`, request),
     /** @param {"step-test" | "ultimate-cycle" | "relay"} kind @param {object} request @returns {Promise<any>} */
     experiment: (kind, request) => call(`/experiments/${kind}`, request),
-    /** @param {object} request @returns {Promise<import("./experiment-types.js").IdentifyAnswer>} */
+    /** @param {object} request @returns {Promise<import("./experiments/types.js").IdentifyAnswer>} */
     identify: (request) => call("/identify", request),
     /** @returns {Promise<{labs: LabSummary[]}>} */
     labs: () => call("/labs"),

@@ -2,7 +2,7 @@
 
 /** @import {ControllerState, State, System, View} from "./types.js" */
 
-import { analysesFromQuery, analysesToQuery } from "./analyses.js";
+import { analysesFromQuery, analysesToQuery } from "./workbench/analyses.js";
 import { toInput } from "./format.js";
 import { matrixLine, parseMatrix } from "./lists.js";
 

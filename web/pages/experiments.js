@@ -1,21 +1,21 @@
 /** From an experiment to a controller, in five steps. */
 
 import { createApi } from "../core/api.js";
-import { createExperimentBench } from "../core/experiment-bench.js";
+import { createExperimentBench } from "../core/experiments/bench.js";
 import { formatNumber } from "../core/format.js";
 import { calm } from "../components/card.js";
 import { createStep, createStepBar } from "../components/step-section.js";
 import "../components/site-header.js";
-import * as findings from "../panels/experiment-findings.js";
-import * as hand from "../panels/experiment-hand.js";
-import * as loop from "../panels/experiment-loop.js";
-import * as plant from "../panels/experiment-plant.js";
-import * as plot from "../panels/experiment-plot.js";
-import * as rules from "../panels/experiment-rules.js";
-import * as setup from "../panels/experiment-setup.js";
-import * as data from "../panels/identify-data.js";
-import * as model from "../panels/identify-model.js";
-import * as record from "../panels/identify-plot.js";
+import * as findings from "../panels/experiments/findings.js";
+import * as hand from "../panels/experiments/hand.js";
+import * as loop from "../panels/experiments/loop.js";
+import * as plant from "../panels/experiments/plant.js";
+import * as plot from "../panels/experiments/plot.js";
+import * as rules from "../panels/experiments/rules.js";
+import * as setup from "../panels/experiments/setup.js";
+import * as data from "../panels/experiments/identify-data.js";
+import * as model from "../panels/experiments/identify-model.js";
+import * as record from "../panels/experiments/identify-plot.js";
 
 const STEPS = [
   { id: "plant", label: "Plant", title: "The plant", lead: "What is to be controlled. From here on you know it only by what it answers." },

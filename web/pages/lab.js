@@ -1,29 +1,29 @@
 /** A lab: the text with its exercises at the left, the bench at the right; on a narrow page a tab each. */
 
-/** @import {Lab, Settings} from "../core/lab-types.js" */
+/** @import {Lab, Settings} from "../core/lab/types.js" */
 
 import { createApi } from "../core/api.js";
-import { inWords, settingsOf, stateOf, withSettings } from "../core/lab-bench.js";
-import { createProgress, localStore } from "../core/lab-progress.js";
-import { PLOTS } from "../core/plots.js";
-import { startSession } from "../core/session.js";
+import { inWords, settingsOf, stateOf, withSettings } from "../core/lab/bench.js";
+import { createProgress, localStore } from "../core/lab/progress.js";
+import { PLOTS } from "../core/workbench/plots.js";
+import { startSession } from "../core/workbench/session.js";
 import { createStore } from "../core/store.js";
 import { h } from "../components/dom.js";
 import "../components/site-header.js";
 import { createStage } from "../components/stage.js";
 import { toast } from "../components/status-toast.js";
 import { createTabs } from "../components/tabs.js";
-import * as actionsBar from "../panels/actions-bar.js";
-import * as bode from "../panels/bode.js";
-import * as knobs from "../panels/lab-knobs.js";
-import * as reading from "../panels/lab-reading.js";
-import * as numbers from "../panels/numbers.js";
-import * as nyquist from "../panels/nyquist.js";
-import * as rootLocus from "../panels/root-locus.js";
-import * as sensitivity from "../panels/sensitivity.js";
-import * as step from "../panels/step.js";
-import * as verdictBar from "../panels/verdict-bar.js";
-import * as viewBar from "../panels/view-bar.js";
+import * as actionsBar from "../panels/workbench/actions-bar.js";
+import * as bode from "../panels/workbench/bode.js";
+import * as knobs from "../panels/lab/knobs.js";
+import * as reading from "../panels/lab/reading.js";
+import * as numbers from "../panels/workbench/numbers.js";
+import * as nyquist from "../panels/workbench/nyquist.js";
+import * as rootLocus from "../panels/workbench/root-locus.js";
+import * as sensitivity from "../panels/workbench/sensitivity.js";
+import * as step from "../panels/workbench/step.js";
+import * as verdictBar from "../panels/workbench/verdict-bar.js";
+import * as viewBar from "../panels/workbench/view-bar.js";
 
 /** @type {Record<string, import("../components/stage.js").Mount>} */
 const MOUNTS = { step: step.mount, bode: bode.mount, nyquist: nyquist.mount, root_locus: rootLocus.mount, sensitivity: sensitivity.mount, numbers: numbers.mount };

@@ -1,22 +1,22 @@
 /** Several loops on one process: the process and its loops on the left; what they do, and how they interact, beside. */
 
 import { createApi } from "../core/api.js";
-import { entryText, FIRST_LOOP, createMimoStore, pairedRequest, tunedLoop } from "../core/mimo.js";
-import { fromMimoQuery, toMimoQuery } from "../core/mimo-url.js";
+import { entryText, FIRST_LOOP, createMimoStore, pairedRequest, tunedLoop } from "../core/mimo/mimo.js";
+import { fromMimoQuery, toMimoQuery } from "../core/mimo/url.js";
 import { h } from "../components/dom.js";
 import { icon } from "../components/icons.js";
 import "../components/site-header.js";
 import { bindUndoKeys } from "../components/undo-keys.js";
-import * as decoupler from "../panels/mimo-decoupler.js";
-import * as diagram from "../panels/mimo-diagram.js";
-import * as interaction from "../panels/mimo-interaction.js";
-import * as loopCards from "../panels/mimo-loops.js";
-import * as plantCard from "../panels/mimo-plant.js";
-import * as responses from "../panels/mimo-responses.js";
-import * as rga from "../panels/mimo-rga.js";
+import * as decoupler from "../panels/mimo/decoupler.js";
+import * as diagram from "../panels/mimo/diagram.js";
+import * as interaction from "../panels/mimo/interaction.js";
+import * as loopCards from "../panels/mimo/loops.js";
+import * as plantCard from "../panels/mimo/plant.js";
+import * as responses from "../panels/mimo/responses.js";
+import * as rga from "../panels/mimo/rga.js";
 
-/** @import {MimoState} from "../core/mimo.js" */
-/** @import {MatrixDocument, PlantSummary} from "../core/plant-types.js" */
+/** @import {MimoState} from "../core/mimo/mimo.js" */
+/** @import {MatrixDocument, PlantSummary} from "../core/plant/types.js" */
 
 /** Share of the settling time in which a loop without dead time is asked to close. */
 const BRISK = 1 / 40;

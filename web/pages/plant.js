@@ -1,27 +1,27 @@
 /** One plant: its drawing, moved by a run that goes on, its curves, and what can be worked out about it. */
 
-/** @import {MatrixDocument} from "../core/plant-types.js" */
+/** @import {MatrixDocument} from "../core/plant/types.js" */
 
 import { createApi } from "../core/api.js";
-import { createPlantBench } from "../core/plant-bench.js";
-import { paceOf, round125 } from "../core/plant-pace.js";
-import { createPlantRun } from "../core/plant-run.js";
+import { createPlantBench } from "../core/plant/bench.js";
+import { paceOf, round125 } from "../core/plant/pace.js";
+import { createPlantRun } from "../core/plant/run.js";
 import { h } from "../components/dom.js";
 import "../components/site-header.js";
-import * as entries from "../panels/matrix-entries.js";
-import * as balance from "../panels/plant-balance.js";
-import * as experiment from "../panels/plant-experiment.js";
-import * as facts from "../panels/plant-facts.js";
-import * as inputs from "../panels/plant-inputs.js";
-import * as linear from "../panels/plant-linear.js";
-import * as loop from "../panels/plant-loop.js";
-import * as map from "../panels/plant-map.js";
-import * as phase from "../panels/plant-phase.js";
-import * as picture from "../panels/plant-picture.js";
-import * as plot from "../panels/plant-plot.js";
-import * as profile from "../panels/plant-profile.js";
-import * as steady from "../panels/plant-steady.js";
-import * as steps from "../panels/transfer-matrix.js";
+import * as entries from "../panels/plant/matrix-entries.js";
+import * as balance from "../panels/plant/balance.js";
+import * as experiment from "../panels/plant/experiment.js";
+import * as facts from "../panels/plant/facts.js";
+import * as inputs from "../panels/plant/inputs.js";
+import * as linear from "../panels/plant/linear.js";
+import * as loop from "../panels/plant/loop.js";
+import * as map from "../panels/plant/map.js";
+import * as phase from "../panels/plant/phase.js";
+import * as picture from "../panels/plant/picture.js";
+import * as plot from "../panels/plant/plot.js";
+import * as profile from "../panels/plant/profile.js";
+import * as steady from "../panels/plant/steady.js";
+import * as steps from "../panels/plant/transfer-matrix.js";
 
 /** Seconds in which the curves of an experiment are played. */
 const PLAYED_IN = 10;

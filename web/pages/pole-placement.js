@@ -1,16 +1,16 @@
 /** Poles wanted, controller found: plane, responses, controller. */
 
 import { createApi } from "../core/api.js";
-import { createDesignBench, writeAddress } from "../core/design-bench.js";
-import { countOf, groupsOf, trimmed } from "../core/pole-groups.js";
-import { place, placementFromQuery, placementToQuery } from "../core/pole-placement.js";
+import { createDesignBench, writeAddress } from "../core/design/bench.js";
+import { countOf, groupsOf, trimmed } from "../core/design/pole-groups.js";
+import { place, placementFromQuery, placementToQuery } from "../core/design/pole-placement.js";
 import { h } from "../components/dom.js";
 import { enlargeable } from "../components/enlarge.js";
 import "../components/site-header.js";
-import * as poles from "../panels/desired-poles.js";
-import * as controller from "../panels/placed-controller.js";
-import * as response from "../panels/placed-response.js";
-import * as form from "../panels/placement-form.js";
+import * as poles from "../panels/pole-placement/desired-poles.js";
+import * as controller from "../panels/pole-placement/controller.js";
+import * as response from "../panels/pole-placement/response.js";
+import * as form from "../panels/pole-placement/form.js";
 
 const host = document.getElementById("bench");
 if (host) {

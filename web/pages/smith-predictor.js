@@ -1,15 +1,15 @@
 /** A predictor, its model and a plant that differs: responses, the plants it stands, numbers. */
 
 import { createApi } from "../core/api.js";
-import { createDesignBench, writeAddress } from "../core/design-bench.js";
-import { judge, smithFromQuery, smithToQuery } from "../core/smith.js";
+import { createDesignBench, writeAddress } from "../core/design/bench.js";
+import { judge, smithFromQuery, smithToQuery } from "../core/design/smith.js";
 import { h } from "../components/dom.js";
 import { enlargeable } from "../components/enlarge.js";
 import "../components/site-header.js";
-import * as compare from "../panels/smith-compare.js";
-import * as form from "../panels/smith-form.js";
-import * as region from "../panels/smith-region.js";
-import * as response from "../panels/smith-response.js";
+import * as compare from "../panels/smith-predictor/compare.js";
+import * as form from "../panels/smith-predictor/form.js";
+import * as region from "../panels/smith-predictor/region.js";
+import * as response from "../panels/smith-predictor/response.js";
 
 const host = document.getElementById("bench");
 if (host) {

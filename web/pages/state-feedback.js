@@ -1,18 +1,18 @@
 /** State feedback: a plant that is let go and caught, its design beside it, and how far the catch reaches. */
 
 import { createApi } from "../core/api.js";
-import { defaultFeedback, fromQuery, toQuery } from "../core/feedback.js";
-import { PROFILES } from "../core/feedback-plants.js";
-import { createFeedbackSession } from "../core/feedback-session.js";
+import { defaultFeedback, fromQuery, toQuery } from "../core/state-feedback/feedback.js";
+import { PROFILES } from "../core/state-feedback/plants.js";
+import { createFeedbackSession } from "../core/state-feedback/session.js";
 import { h } from "../components/dom.js";
 import { createSelectField } from "../components/select-field.js";
 import "../components/site-header.js";
-import * as curves from "../panels/feedback-curves.js";
-import * as map from "../panels/feedback-map.js";
-import * as numbers from "../panels/feedback-numbers.js";
-import * as poles from "../panels/feedback-poles.js";
-import * as settings from "../panels/feedback-settings.js";
-import * as stage from "../panels/feedback-stage.js";
+import * as curves from "../panels/state-feedback/curves.js";
+import * as map from "../panels/state-feedback/map.js";
+import * as numbers from "../panels/state-feedback/numbers.js";
+import * as poles from "../panels/state-feedback/poles.js";
+import * as settings from "../panels/state-feedback/settings.js";
+import * as stage from "../panels/state-feedback/stage.js";
 
 const LONGEST_TICK = 0.1;
 

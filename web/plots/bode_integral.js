@@ -1,6 +1,6 @@
 /** ln |S| over an even frequency axis, with the areas below and above zero. */
 
-/** @import {BodeIntegralAnswer} from "../core/analysis-types.js" */
+/** @import {BodeIntegralAnswer} from "../core/workbench/analysis-types.js" */
 /** @import {Figure, Range, Theme, Trace} from "../core/types.js" */
 /** @import {Held} from "./axes.js" */
 

@@ -2,7 +2,7 @@
 
 /** @import {AsymptotesPanel, Corner, Theme, Trace} from "../core/types.js" */
 
-import { cornerInWords } from "../core/corners.js";
+import { cornerInWords } from "../core/workbench/corners.js";
 import { escapePlotly } from "./escape.js";
 import { lineOf } from "./signals.js";
 

@@ -1,6 +1,6 @@
 /** Responses of y with several controllers, each in a colour and dash of its own, and bands for a model that errs. */
 
-/** @import {ComparedRow} from "../core/analysis-types.js" */
+/** @import {ComparedRow} from "../core/workbench/analysis-types.js" */
 /** @import {Figure, Range, Theme, Trace} from "../core/types.js" */
 /** @import {Held} from "./axes.js" */
 

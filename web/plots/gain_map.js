@@ -1,6 +1,6 @@
 /** The plane of Kc and tau_I of a PI controller: limit of stability, contours of Ms and of the error, rules, optimum. */
 
-/** @import {GainMapAnswer, Optimum, TradeOffPoint} from "../core/analysis-types.js" */
+/** @import {GainMapAnswer, Optimum, TradeOffPoint} from "../core/workbench/analysis-types.js" */
 /** @import {Figure, Range, Theme, Trace} from "../core/types.js" */
 
 import { contourLines } from "../core/contours.js";

@@ -1,6 +1,6 @@
 /** y(t) as the inverse transform has it, with the simulation of the same transform laid over it. */
 
-/** @import {LaplaceAnswer} from "../core/analysis-types.js" */
+/** @import {LaplaceAnswer} from "../core/workbench/analysis-types.js" */
 /** @import {Figure, Theme} from "../core/types.js" */
 /** @import {Held} from "./axes.js" */
 

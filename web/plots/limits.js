@@ -1,10 +1,10 @@
 /** The limits of a loop's bandwidth, a row each, over the frequency axis of S and T. */
 
-/** @import {LimitAnswer, LimitsAnswer} from "../core/analysis-types.js" */
+/** @import {LimitAnswer, LimitsAnswer} from "../core/workbench/analysis-types.js" */
 /** @import {Figure, Numbers, Range, Theme, Trace} from "../core/types.js" */
 /** @import {Held} from "./axes.js" */
 
-import { LIMIT_NAMES } from "../core/limits.js";
+import { LIMIT_NAMES } from "../core/workbench/limits.js";
 import { formatNumber } from "../core/format.js";
 import { axis, baseLayout, holdRange } from "./axes.js";
 import { escapePlotly } from "./escape.js";

@@ -1,6 +1,6 @@
 /** Low-order models over the true step response of the plant. */
 
-/** @import {ApproximateAnswer} from "../core/analysis-types.js" */
+/** @import {ApproximateAnswer} from "../core/workbench/analysis-types.js" */
 /** @import {Figure, Numbers, Theme, Trace} from "../core/types.js" */
 /** @import {Held} from "./axes.js" */
 

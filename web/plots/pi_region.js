@@ -1,6 +1,6 @@
 /** The settings of a PI controller that make the loop stable, over gain and integral time, and the present one. */
 
-/** @import {PiCut} from "../core/analysis-types.js" */
+/** @import {PiCut} from "../core/workbench/analysis-types.js" */
 /** @import {Figure, Range, Theme} from "../core/types.js" */
 
 import { axis, baseLayout } from "./axes.js";

@@ -1,6 +1,6 @@
 /** The answer of a system to any input: y above with what it is the sum of, u below, on one time axis. */
 
-/** @import {ResponseAnswer} from "../core/analysis-types.js" */
+/** @import {ResponseAnswer} from "../core/workbench/analysis-types.js" */
 /** @import {Figure, Numbers, Theme, Trace} from "../core/types.js" */
 /** @import {Held} from "./axes.js" */
 

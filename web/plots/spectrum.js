@@ -1,6 +1,6 @@
 /** A signal and its samples above, the amplitude at each frequency below. */
 
-/** @import {SpectrumAnswer} from "../core/analysis-types.js" */
+/** @import {SpectrumAnswer} from "../core/workbench/analysis-types.js" */
 /** @import {Figure, Numbers, Range, Theme, Trace} from "../core/types.js" */
 /** @import {Held} from "./axes.js" */
 
