@@ -8,7 +8,7 @@ from urllib.parse import parse_qs, urlsplit
 import pytest
 from playwright.sync_api import Page, expect
 
-from workbench import violations
+from access import violations
 
 RECORDS = Path(__file__).parents[1] / "engine" / "identification" / "records"
 # All methods side by side take a second of a free processor.

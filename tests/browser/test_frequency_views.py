@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
-from workbench import open_workbench, settled, slider, violations
+from access import violations
+from workbench import open_workbench, settled, slider
 
 # The drawn turns of the closed curve about -1, clockwise, for the server's answer to /nyquist.
 DRAWN_TURNS = """

@@ -5,7 +5,7 @@ import re
 import pytest
 from playwright.sync_api import Page, expect
 
-from workbench import violations
+from access import violations
 
 # On a machine that computes for others too.
 SLOW = 20_000

@@ -5,7 +5,8 @@ import re
 import numpy as np
 from playwright.sync_api import Page, expect
 
-from workbench import open_workbench, settled, violations
+from access import violations
+from workbench import open_workbench, settled
 
 LOCUS = "document.querySelector('#panel-root_locus .plot')"
 

@@ -2,8 +2,9 @@
 
 import re
 
-from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, expect
+
+from access import violations
 
 # The run is drawn: the server has answered, and a press of Let go plays it.
 READY = "#panel-feedback-run .js-line"
@@ -90,6 +91,5 @@ def test_the_page_passes_axe_and_fits(page: Page):
         page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
         expect(page.locator("html")).to_have_attribute("data-theme", scheme)
         page.wait_for_timeout(300)
-        found = Axe().run(page).response["violations"]
-        assert [(each["id"], [node["target"] for node in each["nodes"]]) for each in found] == []
+        assert violations(page) == []
         assert page.evaluate("document.documentElement.scrollWidth") == width

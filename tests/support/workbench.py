@@ -1,6 +1,5 @@
 """The workbench as its tests use it: open it, find its parts, wait until it has drawn."""
 
-from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Locator, Page, expect
 
 # Drawings are counted from the first script on, so that none is missed.
@@ -41,12 +40,6 @@ def settled(page: Page) -> None:
     while (now := page.evaluate("window.drawings.length")) != before:
         before = now
         page.wait_for_timeout(400)
-
-
-def violations(page: Page) -> list[str]:
-    """What axe finds wrong with the page as it is now."""
-    found = Axe().run(page).response["violations"]
-    return [f"{v['id']}: {v['help']} at {[node['html'][:120] for node in v['nodes']]}" for v in found]
 
 
 def open_analyses(page: Page, *names: str, query: str = "") -> None:

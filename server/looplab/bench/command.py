@@ -35,7 +35,7 @@ def main(arguments: Sequence[str] = ()) -> int:
     steps = (len(moves.COMPARISONS) + len(loci.LOCI) + len(column.ROWS)) * rounds + len(accuracy.CASES)
     steps += 0 if options.no_server else server.STEPS
     # The peer takes seconds for some of these.
-    few = max(3, rounds // 8)
+    few = max(2, rounds // 8)
     steps += (saturated.STEPS + nonlinear_loops.STEPS) * few
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True) as progress:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from looplab.bench.nonlinear_scenarios import SCENARIOS, ControlScenario
-from looplab.bench.timing import WARM_UP, interleave
+from looplab.bench.timing import WARM_UP_OF_SLOW, interleave
 from looplab.engine.systems.polynomial import FloatArray
 
 RTOL, ATOL = 1e-6, 1e-9
@@ -115,7 +115,7 @@ def measure(rounds: int, tick: Callable[[str], None]) -> list[dict[str, Any]]:
     for s in SCENARIOS:
         for what, name, sampled, make in COMPARISONS:
             a, b = ours(s, sampled), make(s)
-            gains = s.gains(rounds + WARM_UP)
+            gains = s.gains(rounds + WARM_UP_OF_SLOW)
 
             def advance(title: str = f"{s.name}: {what}") -> None:
                 tick(title)
@@ -123,7 +123,7 @@ def measure(rounds: int, tick: Callable[[str], None]) -> list[dict[str, Any]]:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 apart = float(np.abs(a(gains[0]) - b(gains[0])).max())
-                timed = interleave(a, b, gains, advance)
+                timed = interleave(a, b, gains, advance, WARM_UP_OF_SLOW)
             results.append(
                 {"plant": s.name, "what": what, "peer_name": name, "goal": None, "difference": apart, **timed}
             )

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from looplab.bench.timing import WARM_UP, interleave
+from looplab.bench.timing import WARM_UP_OF_SLOW, interleave
 from looplab.engine.loop import PID, SaturatedLoop, simulate_saturated
 from looplab.engine.systems import parse_transfer_function
 from looplab.engine.systems.polynomial import FloatArray
@@ -69,7 +69,7 @@ def measure(rounds: int, tick: Callable[[str], None]) -> list[dict[str, Any]]:
     results = []
     for delay in (0, 10):
         a, b = ours(delay), by_control(delay)
-        gains = [4.0 * (1.0 + 0.2 * i / rounds) for i in range(rounds + WARM_UP)]
+        gains = [4.0 * (1.0 + 0.2 * i / rounds) for i in range(rounds + WARM_UP_OF_SLOW)]
         what = f"dead time {delay * H:g}" if delay else "no dead time"
 
         def advance(title: str = f"saturated loop: {what}") -> None:
@@ -78,7 +78,7 @@ def measure(rounds: int, tick: Callable[[str], None]) -> list[dict[str, Any]]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             apart = float(np.abs(a(gains[0]) - b(gains[0])).max())
-            timed = interleave(a, b, gains, advance)
+            timed = interleave(a, b, gains, advance, WARM_UP_OF_SLOW)
         results.append(
             {
                 "plant": f"1/(s+1)^3, {SAMPLES} samples",

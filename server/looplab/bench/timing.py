@@ -14,6 +14,8 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 WARM_UP = 3
+# Of what the peer takes seconds for.
+WARM_UP_OF_SLOW = 1
 BURST = 8
 
 
@@ -24,9 +26,13 @@ def _spread(seconds: list[float]) -> dict[str, float]:
 
 
 def interleave(
-    ours: Callable[[float], Any], peer: Callable[[float], Any], values: Sequence[float], tick: Callable[[], None]
+    ours: Callable[[float], Any],
+    peer: Callable[[float], Any],
+    values: Sequence[float],
+    tick: Callable[[], None],
+    warm_up: int = WARM_UP,
 ) -> dict[str, Any]:
-    """Time eight calls of ours, the same eight of the peer, and so on over the values, after three untimed calls each.
+    """Time eight calls of ours, the same eight of the peer, and so on over the values, after a few untimed ones of each.
 
     Every call is timed on its own. Processor time of this process is what is compared: both run on one thread, and
     other work on the machine does not enter it. Wall time is kept beside it.
@@ -37,9 +43,9 @@ def interleave(
         Medians and quartiles of processor time [ms], their ratio peer/ours, the quartiles of the ratio of the
         two calls for one value, medians of wall time [ms].
     """
-    for value in values[:WARM_UP]:
+    for value in values[:warm_up]:
         ours(value), peer(value)
-    rest = values[WARM_UP:]
+    rest = values[warm_up:]
     spent: dict[str, list[float]] = {"ours": [], "peer": []}
     wall: dict[str, list[float]] = {"ours": [], "peer": []}
     gc.collect()
