@@ -32,7 +32,7 @@ def interleave(
     tick: Callable[[], None],
     warm_up: int = WARM_UP,
 ) -> dict[str, Any]:
-    """Time eight calls of ours, the same eight of the peer, and so on over the values, after a few untimed ones of each.
+    """Time eight calls of ours, the same eight of the peer, and so on, after a few untimed calls of each.
 
     Every call is timed on its own. Processor time of this process is what is compared: both run on one thread, and
     other work on the machine does not enter it. Wall time is kept beside it.
