@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from looplab.engine.design.coprimality import SharedRoot, nearest_pair, shared_roots
 from looplab.engine.design.diophantine import Diophantine, solve_diophantine
@@ -232,6 +231,8 @@ def _scale(*roots: ComplexArray) -> float:
 
 def _pole_error(wanted: ComplexArray, found: ComplexArray) -> float:
     apart = np.abs(wanted[:, None] - found) / np.maximum(np.abs(wanted), 1e-3 * np.abs(wanted).max())[:, None]
+    from scipy.optimize import linear_sum_assignment  # late: a server that does not need it is 26 MB smaller
+
     return float(apart[linear_sum_assignment(apart)].max())
 
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.optimize import brentq
 
 from looplab.engine.errors import RuleNotApplicable
 from looplab.engine.loop import PID
@@ -137,6 +136,8 @@ def smith_tuning(model: TransferFunction, Ms: float) -> SmithTuning:
         return SmithTuning(C, slower, nominal_peak(C, model), False)
     if tau_c == slower:
         raise RuleNotApplicable("no closed-loop time constant keeps the predictor within this Ms", field="Ms_limit")
+    from scipy.optimize import brentq  # late: a server that does not need it is 26 MB smaller
+
     tau_c = float(brentq(lambda x: nominal_peak(_primary(known, x), model) - Ms, tau_c, slower, rtol=1e-10))
     C = _primary(known, tau_c)
     return SmithTuning(C, tau_c, nominal_peak(C, model), True)
