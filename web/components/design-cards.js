@@ -42,7 +42,7 @@ const CARDS = [
   },
   {
     href: "/mimo",
-    title: "Two inputs, two outputs",
+    title: "Several loops",
     says: "Pair inputs with outputs, measure the interaction, and take it away with a decoupler.",
     picture: () => [
       path("M20 36H70M20 84H70", "line"),

@@ -45,11 +45,11 @@ export function mount(host, store, api) {
   function render() {
     const { own_gain: own, effective_gain: seen, relative_gain: relative, own_margins: before, effective_margins: after, others, reasons } = analysis?.answer ?? {};
     const loop = store.get().seen + 1;
-    const row = (/** @type {string} */ name, /** @type {any} */ a, /** @type {any} */ b, unit = "") => [name, formatNumber(a), formatNumber(b), unit];
+    const row = (/** @type {string} */ name, /** @type {any} */ a, /** @type {any} */ b, unit = "") => [unit ? `${name} [${unit}]` : name, formatNumber(a), formatNumber(b)];
     const lost = before && after && before.PM_deg !== null && after.PM_deg !== null ? Math.round(after.PM_deg - before.PM_deg) : null;
     const margin = lost === null ? "" : lost === 0 ? ", and leaves its phase margin as it is" : `, and ${lost < 0 ? "takes" : "adds"} ${Math.abs(lost)}° ${lost < 0 ? "from" : "to"} its phase margin`;
     // With a decoupler the loop's own process is no longer its entry.
-    const why = relative === null || store.get().decoupler !== "none" ? "" : `, its own over λ = ${formatNumber(relative)}`;
+    const why = relative === null || store.get().decoupler !== "none" ? "" : `: divided by λ = ${formatNumber(relative)}`;
     const same = seen !== null && own !== null && Math.abs(seen - own) < 1e-6 * Math.abs(own);
     const change = same ? `leaves the gain that loop ${loop} sees at ${formatNumber(own)}` : `changes the gain that loop ${loop} sees from ${formatNumber(own)} to ${formatNumber(seen)}${why}`;
     const unsafe = others && !others.stable;
@@ -58,9 +58,9 @@ export function mount(host, store, api) {
       h("p", { class: "finding" }, told),
       valueTable(
         `Loop ${loop}, with the others open and closed`,
-        ["", "others open", "others closed", ""],
+        ["", "others open", "others closed"],
         [
-          ["stable", yesNo(before ? before.closed_loop_stable : null), yesNo(after ? after.closed_loop_stable : null), ""],
+          ["stable", yesNo(before ? before.closed_loop_stable : null), yesNo(after ? after.closed_loop_stable : null)],
           row("gain at rest", own, seen),
           row("gain margin", before?.GM_dB, after?.GM_dB, "dB"),
           row("phase margin", before?.PM_deg, after?.PM_deg, "°"),
