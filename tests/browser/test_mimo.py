@@ -70,6 +70,9 @@ def test_a_matrix_of_ones_own_and_what_is_wrong_with_it(page: Page):
     page.get_by_role("radio", name="3×3").check()
     expect(page.locator(".mimo-cell")).to_have_count(9)
     expect(page.locator("#card-loop-3")).to_be_visible()
+    # A decoupler of transfer functions is for two loops.
+    expect(page.get_by_role("radio", name=re.compile("^static"))).to_be_visible()
+    expect(page.get_by_role("radio", name=re.compile("^dynamic"))).to_have_count(0)
 
 
 def test_it_passes_axe_and_fits(page: Page):

@@ -77,10 +77,10 @@ def test_a_pole_is_dragged_and_the_address_keeps_it(page: Page):
     page.reload()
     expect(poles).to_have_value(typed, timeout=WAIT)
     # an observer gives the guarantee away, by weights too
-    page.get_by_role("radio", name=re.compile("^Say what deviations")).check()
+    page.get_by_role("radio", name=re.compile("^LQR")).check()
     margin = page.get_by_role("row", name=re.compile("^Phase margin"))
     expect(margin).to_have_text(re.compile(r"margin[67]\d\.\d°"), timeout=WAIT)
-    page.get_by_role("radio", name=re.compile("^An observer")).check()
+    page.get_by_role("radio", name=re.compile("^Outputs only")).check()
     expect(margin).to_have_text(re.compile(r"margin[12]\d\.\d°"), timeout=WAIT)
 
 

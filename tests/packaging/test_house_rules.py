@@ -112,7 +112,7 @@ def test_what_is_imported_is_declared():
 
 
 def test_slow_packages_are_imported_late():
-    """`control`, matplotlib and scipy.signal cost 1.4 to 1.8 s, scipy.optimize 26 MB: the server starts without them."""
+    """`control`, matplotlib and scipy.signal cost 1.4 to 1.8 s, scipy.optimize 26 MB: none at the start."""
     late = {"control", "matplotlib", "plotly", "pandas", "scipy.signal", "scipy.optimize", "scipy.integrate", "ziamath"}
     code = "import sys, looplab.api, looplab.cli; print(*sys.modules)"
     run = subprocess.run(

@@ -53,7 +53,7 @@ def test_entries():
 
 def test_formulas():
     assert COLUMN.entries[0][0].to_latex() == r"\frac{0.66 e^{-2.6 s}}{6.7 s + 1}"
-    assert COLUMN.entries[1][1].to_latex() == r"\frac{0.87(11.6 s + 1) e^{-1 s}}{(3.89 s + 1)(18.8 s + 1)}"
+    assert COLUMN.entries[1][1].to_latex() == r"\frac{0.87(11.6 s + 1) e^{-s}}{(3.89 s + 1)(18.8 s + 1)}"
 
 
 def test_steps_of_both_inputs_add():

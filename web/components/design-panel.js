@@ -57,7 +57,8 @@ export function mountDesignPanel(host, bench, options) {
   }
 
   bench.subscribe(({ moving, what }) => {
-    frame.root.classList.toggle("stale", bench.error !== null && !options.live);
+    frame.root.classList.toggle("stale", bench.error !== null && bench.answer !== null && !options.live);
+    if (what === "error" && !bench.answer) frame.note("Nothing to show: the message at the settings says why.");
     if (what === "answer" || options.live || (what === "state" && !moving)) draw(moving);
   });
   onThemeChange(() => {

@@ -6,7 +6,7 @@
  * Events: "value-input" while it is typed and good, "value-change" when it is done; both bubble, detail `{value}`.
  */
 
-import { formatNumber, parseNumber, toInput } from "../core/format.js";
+import { parseNumber, toInput } from "../core/format.js";
 import { h, uniqueId } from "./dom.js";
 import { symbol, SYMBOLS } from "./symbol.js";
 
@@ -69,9 +69,9 @@ export class NumberField extends HTMLElement {
     const min = this.#limit("min");
     const max = this.#limit("max");
     const above = this.#limit("above");
-    if (above !== null && value <= above) return { value: null, wrong: `Must be above ${formatNumber(above)}.` };
-    if (min !== null && value < min) return { value: null, wrong: `Must be at least ${formatNumber(min)}.` };
-    if (max !== null && value > max) return { value: null, wrong: `Must be at most ${formatNumber(max)}.` };
+    if (above !== null && value <= above) return { value: null, wrong: `Must be above ${toInput(above)}.` };
+    if (min !== null && value < min) return { value: null, wrong: `Must be at least ${toInput(min)}.` };
+    if (max !== null && value > max) return { value: null, wrong: `Must be at most ${toInput(max)}.` };
     return { value, wrong: "" };
   }
 

@@ -20,7 +20,9 @@ export class SegmentedControl extends HTMLElement {
   set options(options) {
     this.replaceChildren(
       ...options.map(({ value, label, title }) => {
-        const input = h("input", { type: "radio", name: this.#group, value, "aria-label": title });
+        // Who steers by voice says the word in sight: the name begins with it.
+        const name = title && typeof label === "string" && !title.toLowerCase().startsWith(label.toLowerCase()) ? `${label}: ${title}` : title;
+        const input = h("input", { type: "radio", name: this.#group, value, "aria-label": name });
         input.addEventListener("change", () => {
           this.#value = value;
           this.dispatchEvent(new CustomEvent("value-change", { bubbles: true, detail: { value } }));

@@ -43,7 +43,7 @@ export function formatAbsent(reason) {
 
 /** Names of times in words from the server as they are printed: tau_c is τ_c. @param {string} text */
 export function greek(text) {
-  return text.replace(/\b(tau|theta|lambda)(?=\b|_)/g, (name) => (name === "tau" ? "τ" : name === "theta" ? "θ" : "λ"));
+  return text.replace(/\b(tau|theta|lambda)(?:_|\b)/g, (_, name) => (name === "tau" ? "τ" : name === "theta" ? "θ" : "λ"));
 }
 
 /**

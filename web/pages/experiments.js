@@ -55,7 +55,7 @@ function open(main) {
     bar.show("experiment", found.ultimate ? `Ku ${formatNumber(found.ultimate.Ku)}` : result ? "done" : null);
     bar.show("model", system ? (system.K === undefined ? "found" : `K ${formatNumber(system.K)}`) : null);
     bar.show("controller", tuned ? `${tuned.type}, Kc ${formatNumber(tuned.Kc)}` : null);
-    bar.show("run", tuned ? "below" : null);
+    bar.show("run", tuned ? "done" : null);
   }
   bench.on(["about", "result", "found", "rules", "pick"], where);
   where();

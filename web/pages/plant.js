@@ -50,7 +50,7 @@ async function open(id, main) {
     const matrix = /** @type {MatrixDocument} */ (/** @type {unknown} */ (answer.document));
     head.append(h("p", { class: "facts" }, `Source: ${matrix.source}`));
     // Loops want an input each.
-    if (matrix.inputs.length === matrix.outputs.length && matrix.inputs.length > 1) head.append(h("p", {}, h("a", { class: "button primary", href: `/mimo?${new URLSearchParams({ plant: id })}` }, "Close its loops: pairing, interaction, decoupling")));
+    if (matrix.inputs.length === matrix.outputs.length && matrix.inputs.length > 1) head.append(h("p", {}, h("a", { class: "button primary", href: `/mimo?${new URLSearchParams({ plant: id })}` }, "Close its loops"), " Pairing, interaction, decoupling."));
     const panels = h("div", { class: "plant-analyses" });
     main.replaceChildren(head, panels);
     entries.mount(panels, matrix, answer.equations);

@@ -29,7 +29,7 @@ async function open(main) {
   const [middle, right, rail, region, law] = ["stage", "run", "rail", "map", "law"].map((name) => h("div", { class: `feedback-place ${name}` }));
   if (!middle || !right || !rail || !region || !law) return;
   main.replaceChildren(
-    h("header", { class: "feedback-head" }, h("div", {}, h("h1", {}, "State feedback"), h("p", {}, "Tilt it, let it go, and see the feedback catch it. Then find out from where it no longer can.")), chooser.root),
+    h("header", { class: "feedback-head" }, h("div", {}, h("p", { class: "design-path" }, h("a", { href: "/design" }, "Design"), " › State feedback"), h("h1", {}, "State feedback"), h("p", {}, "Take the plant out of its balance, let it go, and see the feedback catch it. Then find out from where it no longer can.")), chooser.root),
     h("div", { class: "feedback-bench" }, middle, right, rail, region, law),
   );
   const staged = stage.mount(middle, session, api, plants);

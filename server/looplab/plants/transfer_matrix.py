@@ -62,7 +62,8 @@ class Entry:
         factors = ["".join(rf"({each:g} s + 1)" for each in some) for some in (self.leads, self.lags)]
         if len(self.lags) == 1:
             factors[1] = factors[1].strip("()")
-        delay = f" e^{{-{self.theta:g} s}}" if self.theta else ""
+        rate = "" if self.theta == 1 else f"{self.theta:g} "
+        delay = f" e^{{-{rate}s}}" if self.theta else ""
         return rf"\frac{{{self.K:g}{factors[0]}{delay}}}{{{factors[1]}}}"
 
 

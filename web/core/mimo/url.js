@@ -62,6 +62,8 @@ export function fromMimoQuery(search) {
   else state.plant = query.get("plant") || state.plant;
   if (tuned) Object.assign(state, { loops, pairing });
   state.decoupler = /** @type {const} */ (["static", "dynamic"]).find((kind) => kind === query.get("decoupler")) ?? "none";
+  // That of transfer functions is for two loops.
+  if (n > 2 && state.decoupler === "dynamic") state.decoupler = "none";
   state.prediction = query.get("prediction") === "wait" ? "wait" : "drop";
   const [kind, loop, size] = (query.get("test") ?? "").split(",");
   if ((kind === "setpoint" || kind === "load") && Number(loop) >= 1 && Number(loop) <= n && Number.isFinite(Number(size)) && Number(size) !== 0) state.test = { kind, loop: Math.floor(Number(loop)) - 1, size: Number(size) };

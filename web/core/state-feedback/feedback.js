@@ -217,7 +217,7 @@ export function toQuery(state) {
   for (const name of names) put(`start.${name}`, Number((state.start[name] ?? 0).toPrecision(5)), Number((plain.start[name] ?? 0).toPrecision(5)));
   put("limit", state.limit, plain.limit);
   put("endless", state.endless ? 1 : 0, 0);
-  return query.toString();
+  return query.toString().replace(/%2C/g, ",");
 }
 
 /** @param {string} search @returns {FeedbackState} */

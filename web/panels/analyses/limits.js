@@ -100,7 +100,7 @@ export function mount(host, store, api) {
 /** @param {LimitsAnswer} answer @param {string} rate */
 function verdict({ window, omega_c, limits }, rate) {
   const now = omega_c === null ? "This loop has no crossover." : `Now it is ${formatNumber(omega_c)} ${rate}.`;
-  const broken = limits.filter(({ met }) => met === false).map(({ id }) => LIMIT_NAMES[id]?.toLowerCase());
+  const broken = limits.filter(({ met }) => met === false).map(({ id }) => LIMIT_NAMES[id]?.replace(/^[A-Z](?=[a-z])/, (letter) => letter.toLowerCase()));
   const judged = broken.length > 0 ? ` That is past the limit of: ${broken.join(", ")}.` : omega_c !== null && limits.some(({ met }) => met) ? " All limits are kept." : "";
   return h("p", { class: "finding" }, h("strong", {}, sentence(window.because)), ` ${now}${judged}`);
 }
@@ -123,12 +123,12 @@ function listed({ limits }, rate) {
 /** One plain sentence for each thing that bandwidth costs. @param {LimitsAnswer} answer @param {string} unit */
 function costs({ closed_loop_stable, actuator, noise_passed, load_left, mismatch, peaks, step }, unit) {
   if (!closed_loop_stable) return part("What this loop makes of it", finding("The loop is not stable: lower the gain, or for an unstable plant raise it, to read what it costs."));
-  const at = (/** @type {number | null} */ omega) => (omega === null ? "at ever higher frequencies" : `at ω = ${formatNumber(omega)}`);
+  const at = (/** @type {number | null} */ omega) => (omega === null ? "at ever higher frequencies" : `at ω = ${formatNumber(omega)} rad/${unit}`);
   /** @type {string[]} */
   const said = [];
   if (actuator) {
     const { initial, final, ratio, peak, plant_bandwidth, loop_bandwidth } = actuator;
-    const wide = plant_bandwidth.omega !== null && loop_bandwidth.omega !== null ? ` The loop is ${formatNumber(loop_bandwidth.omega / plant_bandwidth.omega)} times as fast as the plant (bandwidths ${formatNumber(loop_bandwidth.omega)} and ${formatNumber(plant_bandwidth.omega)}).` : "";
+    const wide = plant_bandwidth.omega !== null && loop_bandwidth.omega !== null ? ` The loop is ${formatNumber(loop_bandwidth.omega / plant_bandwidth.omega)} times as fast as the plant (bandwidths ${formatNumber(loop_bandwidth.omega)} and ${formatNumber(plant_bandwidth.omega)} rad/${unit}).` : "";
     said.push(`Actuator: a step of r takes u = ${formatNumber(initial)} at once${final === null ? "" : ` and ${formatNumber(final)} in the end`}${ratio === null ? "" : `, ${formatNumber(ratio)} times as much`}; |T/P| is at most ${formatNumber(peak.value)}, ${at(peak.omega)}.${wide}`);
   }
   if (load_left) said.push(`Load: a sine of size 1 in d moves y by at most ${formatNumber(load_left.value)}, ${at(load_left.omega)}.`);
@@ -137,7 +137,7 @@ function costs({ closed_loop_stable, actuator, noise_passed, load_left, mismatch
     const { peak, robustly_stable, worst_S } = mismatch;
     said.push(
       robustly_stable
-        ? `Model error: safe, |T GΔ| is at most ${formatNumber(peak)} < 1; errors may grow by a factor of ${formatNumber(worst_S)}.`
+        ? `Model error: safe, |T GΔ| is at most ${formatNumber(peak)} < 1; the error of the loop may become ${formatNumber(worst_S)} times what the model says.`
         : `Model error: not safe, |T GΔ| reaches ${formatNumber(peak)} ≥ 1; some plant within the spread may be unstable. Retune for a lower peak of T.`,
     );
   }

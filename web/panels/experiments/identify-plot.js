@@ -100,8 +100,8 @@ export function mount(step, bench) {
     if (!found || value === undefined) return null;
     const [[x0 = 0, x1 = 1], [low = 0, high = 1]] = [ranges["xaxis"] ?? [], ranges["yaxis"] ?? []];
     if (!LINES[name].time) return { x: name === "y0" ? x1 - EDGE * (x1 - x0) : x0 + EDGE * (x1 - x0), y: value };
-    // t0 is off the levels, where t1 may come close to it.
-    if (name === "t0") return { x: value, y: high - EDGE * (high - low) };
+    // t0 is off the levels, where t1 may come close to it, and off y∞, whose handle is as near to the left edge.
+    if (name === "t0") return { x: value, y: (low + high) / 2 };
     return { x: value, y: levelOf(bench.setting.method, name, found.lines) };
   }
 

@@ -13,11 +13,7 @@ import "../../components/segmented-control.js";
 /** @param {HTMLElement} host @param {MimoStore} store @param {Api} api */
 export function mount(host, store, api) {
   const kind = h("segmented-control", { label: "Decoupler" });
-  kind.options = [
-    { value: "none", label: "none" },
-    { value: "static", label: "static", title: "static: gains, right at rest" },
-    { value: "dynamic", label: "dynamic", title: "dynamic: transfer functions, for two loops" },
-  ];
+  let offered = 0;
   kind.addEventListener("value-change", () => store.set({ decoupler: /** @type {import("../../core/mimo/mimo.js").MimoState["decoupler"]} */ (kind.value) }));
   const prediction = h("segmented-control", { label: "Where it would have to predict" });
   prediction.options = [
@@ -44,6 +40,14 @@ export function mount(host, store, api) {
 
   function show() {
     const state = store.get();
+    if (offered !== state.loops.length) {
+      offered = state.loops.length;
+      kind.options = [
+        { value: "none", label: "none" },
+        { value: "static", label: "static", title: "static: gains, right at rest" },
+        ...(offered === 2 ? [{ value: "dynamic", label: "dynamic", title: "dynamic: transfer functions, for two loops" }] : []),
+      ];
+    }
     kind.value = state.decoupler;
     prediction.value = state.prediction;
     predicting.hidden = state.decoupler !== "dynamic";

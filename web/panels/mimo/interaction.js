@@ -13,8 +13,8 @@ import "../../components/segmented-control.js";
 import { createFigure } from "../../plots/figure.js";
 import { curvesPlot } from "../../plots/mimo/frequency.js";
 
-/** Of a unit step: what runs away leaves the picture there. */
-const [LOWEST, HIGHEST] = [-3, 4];
+/** What runs away leaves the picture there. @type {[number, number]} */
+const OF_A_UNIT_STEP = [-3, 4];
 
 /** @param {HTMLElement} host @param {MimoStore} store @param {Api} api */
 export function mount(host, store, api) {
@@ -45,11 +45,12 @@ export function mount(host, store, api) {
   function render() {
     const { own_gain: own, effective_gain: seen, relative_gain: relative, own_margins: before, effective_margins: after, others, reasons } = analysis?.answer ?? {};
     const loop = store.get().seen + 1;
-    const row = (/** @type {string} */ name, /** @type {any} */ a, /** @type {any} */ b, unit = "") => [name, formatNumber(a), formatNumber(b), unit];
-    const lost = before && after && before.PM_deg !== null && after.PM_deg !== null ? Math.round(after.PM_deg - before.PM_deg) : null;
+    const row = (/** @type {string} */ name, /** @type {any} */ a, /** @type {any} */ b, unit = "") => [unit ? `${name} [${unit}]` : name, formatNumber(a), formatNumber(b)];
+    // Of a loop that is not stable the angle is no margin.
+    const lost = before?.closed_loop_stable && after?.closed_loop_stable && before.PM_deg !== null && after.PM_deg !== null ? Math.round(after.PM_deg - before.PM_deg) : null;
     const margin = lost === null ? "" : lost === 0 ? ", and leaves its phase margin as it is" : `, and ${lost < 0 ? "takes" : "adds"} ${Math.abs(lost)}° ${lost < 0 ? "from" : "to"} its phase margin`;
     // With a decoupler the loop's own process is no longer its entry.
-    const why = relative === null || store.get().decoupler !== "none" ? "" : `, its own over λ = ${formatNumber(relative)}`;
+    const why = relative === null || store.get().decoupler !== "none" ? "" : `: divided by λ = ${formatNumber(relative)}`;
     const same = seen !== null && own !== null && Math.abs(seen - own) < 1e-6 * Math.abs(own);
     const change = same ? `leaves the gain that loop ${loop} sees at ${formatNumber(own)}` : `changes the gain that loop ${loop} sees from ${formatNumber(own)} to ${formatNumber(seen)}${why}`;
     const unsafe = others && !others.stable;
@@ -58,9 +59,9 @@ export function mount(host, store, api) {
       h("p", { class: "finding" }, told),
       valueTable(
         `Loop ${loop}, with the others open and closed`,
-        ["", "others open", "others closed", ""],
+        ["", "others open", "others closed"],
         [
-          ["stable", yesNo(before ? before.closed_loop_stable : null), yesNo(after ? after.closed_loop_stable : null), ""],
+          ["stable", yesNo(before ? before.closed_loop_stable : null), yesNo(after ? after.closed_loop_stable : null)],
           row("gain at rest", own, seen),
           row("gain margin", before?.GM_dB, after?.GM_dB, "dB"),
           row("phase margin", before?.PM_deg, after?.PM_deg, "°"),
@@ -76,7 +77,7 @@ export function mount(host, store, api) {
       const nothing = { t: [], y: [] };
       const [a, b] = [answer.own_response ?? nothing, answer.effective_response ?? nothing];
       const x = a.t.length >= b.t.length ? a.t : b.t;
-      return { x, curves: [{ name: "others open", signal: "case_1", values: a.y }, { name: "others closed", signal: "y", values: b.y }], yTitle: `y${store.get().seen + 1}`, xTitle: `t [${answer.time_unit}]`, log: false, unit: answer.time_unit, show: /** @type {[number, number]} */ ([0, 1.2]) };
+      return { x, curves: [{ name: "others open", signal: "case_1", values: a.y }, { name: "others closed", signal: "y", values: b.y }], yTitle: `y${store.get().seen + 1}`, xTitle: `t [${answer.time_unit}]`, log: false, unit: answer.time_unit, show: /** @type {[number, number]} */ ([0, 1.2]), most: OF_A_UNIT_STEP };
     }
     const name = view === "magnitude" ? "mag_dB" : "phase_deg";
     return { x: answer.omega, curves: [{ name: "others open", signal: "case_1", values: answer.own[name] }, { name: "others closed", signal: "y", values: answer.effective[name] }], yTitle: view === "magnitude" ? "|g| [dB]" : "arg g [°]", xTitle: `ω [rad/${answer.time_unit}]`, log: true, unit: `rad/${answer.time_unit}` };
@@ -96,9 +97,7 @@ export function mount(host, store, api) {
       render,
       draw(theme, held) {
         if (!analysis?.answer) return null;
-        const shown = curves();
-        const calm = view === "response" ? shown.curves.map((curve) => ({ ...curve, values: Array.from(curve.values, (/** @type {number} */ value) => (value < LOWEST || value > HIGHEST ? NaN : value)) })) : shown.curves;
-        return curvesPlot({ ...shown, curves: calm }, theme, held);
+        return curvesPlot(curves(), theme, held);
       },
       table() {
         if (!analysis?.answer) return null;

@@ -4,7 +4,7 @@
 /** @import {PlacementAnswer, PlacementState} from "../../core/design/pole-placement.js" */
 /** @import {Numbers, StepPanel} from "../../core/types.js" */
 
-import { formatFixed, formatNumber, formatWithUnit } from "../../core/format.js";
+import { formatFixed, formatNumber, formatWithUnit, sentence } from "../../core/format.js";
 import { mountDesignPanel } from "../../components/design-panel.js";
 import { h } from "../../components/dom.js";
 import "../../components/segmented-control.js";
@@ -53,7 +53,8 @@ export function mount(host, bench) {
       return stepResponse({ step: panel, metrics: factor() === 1 ? (metrics?.[signal] ?? null) : null, stable: verdict?.closed_loop_stable ?? true, signal, ghosts: [], timeUnit: "s" }, theme, held);
     },
     note() {
-      const { metrics, step: found } = bench.answer?.loop.panels ?? {};
+      const { metrics, step: found, verdict } = bench.answer?.loop.panels ?? {};
+      if (verdict && !verdict.closed_loop_stable) return `The loop is ${verdict.verdict}: put every pole into the left half-plane.`;
       const judged = metrics?.[bench.state.signal];
       const largest = found ? Math.max(...Array.from(step()?.[bench.state.signal].u ?? [0], Math.abs)) : null;
       const parts = [];
@@ -61,7 +62,7 @@ export function mount(host, bench) {
       if (judged?.t_settle != null) parts.push(`settles in ${formatWithUnit(judged.t_settle, "s")}`);
       if (largest !== null) parts.push(`u goes up to ${formatNumber(largest)}`);
       const text = parts.join(", ");
-      return text ? `${text.charAt(0).toUpperCase()}${text.slice(1)}.` : "";
+      return text.startsWith("u ") ? `The input ${text}.` : sentence(text);
     },
     legend: () => ["r", "y", "u"].map((name) => ({ signal: name, label: SIGNALS[name]?.label ?? name, name: SIGNALS[name]?.name ?? name, dash: SIGNALS[name]?.dash })),
     table() {

@@ -23,8 +23,8 @@ function stretchText({ closed_loop_stable: stable, tolerates }, axis) {
   if (!stretch) return stable ? UNDEFINED : "none";
   const [low, high] = stretch;
   const pct = (/** @type {number} */ factor) => `${pctOf(factor) >= 0 ? "+" : ""}${formatFixed(pctOf(factor), 0)}`;
-  if (high >= FARTHEST) return low <= LOWEST ? "any" : `> ${pct(low)} %`;
-  return low <= LOWEST ? `< ${pct(high)} %` : `${pct(low)} … ${pct(high)} %`;
+  if (high >= FARTHEST) return low <= LOWEST ? "any" : `> ${pct(low)}`;
+  return low <= LOWEST ? `< ${pct(high)}` : `${pct(low)} … ${pct(high)}`;
 }
 /** The ends of what the server looks at. */
 const FARTHEST = 10;
@@ -43,8 +43,8 @@ const LINES = [
   { label: "Delay margin [s]", of: ({ margins }) => figure(margins?.["delay_margin"], margins?.reasons["delay_margin"]) },
   { label: "IAE, setpoint", of: ({ setpoint }) => figure(setpoint?.["IAE"], setpoint?.reasons["IAE"]) },
   { label: "IAE, load", of: ({ load }) => figure(load?.["IAE"], load?.reasons["IAE"]) },
-  { label: "Gain may be", of: (row) => stretchText(row, "K") },
-  { label: "Dead time may be", of: (row) => stretchText(row, "theta") },
+  { label: "Gain may be [%]", of: (row) => stretchText(row, "K") },
+  { label: "Dead time may be [%]", of: (row) => stretchText(row, "theta") },
 ];
 
 /** @param {HTMLElement} host @param {DesignBench<SmithState, SmithAnswer>} bench */

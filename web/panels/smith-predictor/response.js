@@ -3,6 +3,7 @@
 /** @import {DesignBench} from "../../core/design/bench.js" */
 /** @import {SmithAnswer, SmithState} from "../../core/design/smith.js" */
 
+import { sentence } from "../../core/format.js";
 import { LOOPS } from "../../core/design/smith.js";
 import { mountDesignPanel } from "../../components/design-panel.js";
 import { h } from "../../components/dom.js";
@@ -37,7 +38,7 @@ export function mount(host, bench) {
     note: () =>
       shown()
         .filter(({ closed_loop_stable }) => !closed_loop_stable)
-        .map(({ name }) => `${LOOPS[name].label} is not stable on this plant.`)
+        .map(({ name }) => sentence(`${LOOPS[name].label} is not stable on this plant`))
         .join(" "),
     legend: () => [...shown().map(({ name }) => ({ signal: LOOPS[name].signal, label: LOOPS[name].label, name: LOOPS[name].name, dash: SIGNALS[LOOPS[name].signal]?.dash })), { signal: "r", label: "r", name: "setpoint", dash: "dash" }],
     table() {

@@ -45,7 +45,7 @@ export function mount(host, session) {
         h("p", { class: "field-hint" }, `x = (${design.states.map(({ name }) => written(name)).join(", ")})`),
         h("div", { class: "matrices" }, matrixBlock("K", design.K), ...(design.K_I ? [matrixBlock("K_I", design.K_I)] : []), ...(design.N ? [matrixBlock("N", design.N)] : []), ...(design.L ? [matrixBlock("L", design.L)] : [])),
         ...(design.N_reason ? [h("p", { class: "finding" }, sentence(design.N_reason))] : []),
-        h("div", { class: "feedback-tables" }, valueTable("Where the poles are", ["", "s"], rows), valueTable("Where the input enters the plant", ["", ""], robust)),
+        h("div", { class: "feedback-tables" }, valueTable(`Where the poles are, in 1/${design.time_unit}`, ["", ""], rows), valueTable("Where the input enters the plant", ["", ""], robust)),
         h("p", { class: "feedback-lesson" }, lesson),
       );
     },

@@ -72,7 +72,7 @@ export function mount(host, session, api, plants) {
     picture.hidden = !summary?.drawing;
     tilts.replaceChildren(
       ...(session.state.plant === "matrices" ? session.state.matrices.A.map((_, i) => ({ state: `x${i + 1}`, label: `x${i + 1} starts at`, factor: 1, unit: "", min: -2, max: 2, step: 0.1 })) : session.profile.tilts).slice(0, 4).map((tilt) => {
-        const slider = h("gain-slider", { label: tilt.label, unit: tilt.unit, min: tilt.min, max: tilt.max, linear: true, step: tilt.step });
+        const slider = h("gain-slider", { label: tilt.label, unit: tilt.unit, min: tilt.min, max: tilt.max, linear: true, step: tilt.step, hard: session.state.plant !== "matrices" });
         slider.value = Number((tilt.factor * (session.state.start[tilt.state] ?? 0)).toPrecision(4));
         slider.dataset["state"] = tilt.state;
         slider.dataset["factor"] = String(tilt.factor);

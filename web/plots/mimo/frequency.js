@@ -11,12 +11,12 @@ import { lineOf } from "../signals.js";
 
 /**
  * Curves over one axis.
- * @param {{x: Numbers, curves: Curve[], xTitle: string, yTitle: string, log: boolean, logY?: boolean, unit: string, show?: Range}} input  show: what the axis holds in any case
+ * @param {{x: Numbers, curves: Curve[], xTitle: string, yTitle: string, log: boolean, logY?: boolean, unit: string, show?: Range, most?: Range}} input  show: what the axis holds in any case; most: where it ends, wherever the curves go
  * @param {Theme} theme
  * @param {Held} held
  * @returns {Figure}
  */
-export function curvesPlot({ x, curves, xTitle, yTitle, log, logY = false, unit, show }, theme, held) {
+export function curvesPlot({ x, curves, xTitle, yTitle, log, logY = false, unit, show, most = [-Infinity, Infinity] }, theme, held) {
   const traces = curves.map(
     ({ name, signal, values }) =>
       /** @type {Trace} */ ({
@@ -29,7 +29,8 @@ export function curvesPlot({ x, curves, xTitle, yTitle, log, logY = false, unit,
         hovertemplate: `${escapePlotly(name)} = %{y:.4~g} at %{x:.4~g} ${escapePlotly(unit)}<extra></extra>`,
       }),
   );
-  const [low, high] = extent(...curves.map(({ values }) => values), show ?? []);
+  const [lowest, highest] = extent(...curves.map(({ values }) => values), show ?? []);
+  const [low, high] = [Math.max(lowest, most[0]), Math.min(highest, most[1])];
   const [first, last] = [x[0] ?? 0.01, x[x.length - 1] ?? 100];
   const ranges = {
     xaxis: /** @type {Range} */ (log ? [Math.log10(first), Math.log10(last)] : [first, last]),

@@ -11,6 +11,8 @@ import { lineOf } from "../signals.js";
 
 /** Share of the height between two rows. */
 const GAP = 0.06;
+/** What is smaller than this part of the step is rounding: a decoupled output stays at zero. */
+const ROUNDING = 1e-9;
 /** Where the second column starts. */
 const SECOND = 0.54;
 
@@ -40,7 +42,8 @@ export function mimoResponsesPlot({ t, outputs, inputs, horizon, timeUnit, stabl
       const signal = outputs.some((row) => row.name === name) ? "y" : "u";
       const label = escapePlotly(name);
       const top = 1 - i * (height + GAP);
-      const reach = stable ? extent(values, setpoint === null ? [0] : [0, setpoint]) : runawayExtent(values, size);
+      const [low, high] = stable ? extent(values, setpoint === null ? [0] : [0, setpoint]) : runawayExtent(values, size);
+      const reach = /** @type {Range} */ (Math.max(-low, high) < ROUNDING * Math.abs(size) ? [0, Math.abs(size)] : [low, high]);
       const range = holdRange(held, `yaxis${number}`, ...reach);
       ranges[`yaxis${number}`] = range;
       axes[`yaxis${number}`] = axis(theme, own && own !== "-" ? `${label} [${escapePlotly(own)}]` : label, range, { domain: [Math.max(0, top - height), top], nticks: 5, anchor: `x${x}` });

@@ -158,7 +158,7 @@ def _without_dead_time(plant: TransferFunction, order: int | None) -> TransferFu
         raise InvalidInput(
             "a plant with dead time has infinitely many closed-loop poles: a finite controller cannot place them all",
             field="plant",
-            hint="use a Smith predictor, or give pade_order to design for a Padé approximation of the dead time",
+            hint="use a Smith predictor, or design for a Padé approximation of the dead time (pade_order)",
         )
     return plant.without_dead_time() * pade(plant.theta, order)
 
