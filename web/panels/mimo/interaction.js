@@ -59,7 +59,7 @@ export function mount(host, store, api) {
       h("p", { class: "finding" }, told),
       valueTable(
         `Loop ${loop}, with the others open and closed`,
-        ["", "others open", "others closed"],
+        ["", "open", "closed"],
         [
           ["stable", yesNo(before ? before.closed_loop_stable : null), yesNo(after ? after.closed_loop_stable : null)],
           row("gain at rest", own, seen),

@@ -23,8 +23,8 @@ function stretchText({ closed_loop_stable: stable, tolerates }, axis) {
   if (!stretch) return stable ? UNDEFINED : "none";
   const [low, high] = stretch;
   const pct = (/** @type {number} */ factor) => `${pctOf(factor) >= 0 ? "+" : ""}${formatFixed(pctOf(factor), 0)}`;
-  if (high >= FARTHEST) return low <= LOWEST ? "any" : `> ${pct(low)}`;
-  return low <= LOWEST ? `< ${pct(high)}` : `${pct(low)} … ${pct(high)}`;
+  if (high >= FARTHEST) return low <= LOWEST ? "any" : `>\u202f${pct(low)}`;
+  return low <= LOWEST ? `<\u202f${pct(high)}` : `${pct(low)} … ${pct(high)}`;
 }
 /** The ends of what the server looks at. */
 const FARTHEST = 10;
