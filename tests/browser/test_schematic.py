@@ -113,6 +113,7 @@ def test_dashes_run_the_way_of_the_flow(page: Page):
 def test_nothing_runs_for_those_who_ask_for_less_motion(page: Page):
     page.emulate_media(reduced_motion="reduce")
     show(page, TANK, {"h": 0.5, "T": 0.0, "phi": 0.0, "F": 1.0})
+    page.wait_for_timeout(300)
     assert page.evaluate(RUNNING) == 0
     page.emulate_media(reduced_motion="no-preference")
     page.wait_for_timeout(300)
