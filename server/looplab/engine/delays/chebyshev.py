@@ -12,15 +12,18 @@ from looplab.engine.systems.polynomial import FloatArray
 DEGREE = 24
 
 _index = np.arange(DEGREE + 1)
-# From -1 to 1.
-NODES: FloatArray = -np.cos(np.pi * _index / DEGREE)
-_weights = (-1.0) ** _index
-_weights[[0, -1]] *= 0.5
 
 
-def _differentiation() -> FloatArray:
-    c = np.where((_index == 0) | (_index == DEGREE), 2.0, 1.0) * (-1.0) ** _index
-    D = np.outer(c, 1.0 / c) / (NODES[:, None] - NODES[None, :] + np.eye(DEGREE + 1))
+def points(degree: int) -> FloatArray:
+    """Chebyshev points from -1 to 1, shape (degree + 1,)."""
+    return np.asarray(-np.cos(np.pi * np.arange(degree + 1) / degree))
+
+
+def differentiation(degree: int) -> FloatArray:
+    """Values at the points -> slopes there, shape (degree + 1, degree + 1)."""
+    index, x = np.arange(degree + 1), points(degree)
+    c = np.where((index == 0) | (index == degree), 2.0, 1.0) * (-1.0) ** index
+    D = np.outer(c, 1.0 / c) / (x[:, None] - x[None, :] + np.eye(degree + 1))
     return np.asarray(D - np.diag(D.sum(axis=1)))
 
 
@@ -31,22 +34,25 @@ def _to_coefficients() -> FloatArray:
     return np.asarray(T * (-1.0) ** _index[:, None])
 
 
-DIFFERENTIATE = _differentiation()
+NODES = points(DEGREE)
+DIFFERENTIATE = differentiation(DEGREE)
 # Values at the nodes -> Chebyshev coefficients.
 TO_COEFFICIENTS = _to_coefficients()
 _R, _V = schur(DIFFERENTIATE[1:, 1:].T.astype(complex), output="complex")
 
 
-def interpolation(x: FloatArray) -> FloatArray:
-    """Rows that map values at the nodes to values at x in [-1, 1], shape (x.size, DEGREE + 1)."""
-    gap = x[:, None] - NODES
+def interpolation(x: FloatArray, degree: int = DEGREE) -> FloatArray:
+    """Rows that map values at the points to values at x in [-1, 1], shape (x.size, degree + 1)."""
+    weights = (-1.0) ** np.arange(degree + 1)
+    weights[[0, -1]] *= 0.5
+    gap = x[:, None] - points(degree)
     hit = gap == 0
     gap[hit] = 1.0
-    rows = _weights / gap
+    rows = weights / gap
     rows /= rows.sum(axis=1, keepdims=True)
     on_node = hit.any(axis=1)
     rows[on_node] = hit[on_node]
-    return rows
+    return np.asarray(rows)
 
 
 def polynomials(x: FloatArray) -> FloatArray:

@@ -11,6 +11,7 @@ from math import ceil, gcd, lcm
 
 import numpy as np
 
+from looplab.engine.delays.chebyshev import differentiation, interpolation
 from looplab.engine.delays.system import DelaySystem
 from looplab.engine.systems.polynomial import FloatArray
 
@@ -26,18 +27,7 @@ LARGEST_STATE = 1e13
 LOOK_EVERY = 32
 
 _index = np.arange(DEGREE + 1)
-NODES: FloatArray = -np.cos(np.pi * _index / DEGREE)
-_weights = (-1.0) ** _index
-_weights[[0, -1]] *= 0.5
-
-
-def _differentiation() -> FloatArray:
-    c = np.where((_index == 0) | (_index == DEGREE), 2.0, 1.0) * (-1.0) ** _index
-    D = np.outer(c, 1.0 / c) / (NODES[:, None] - NODES[None, :] + np.eye(DEGREE + 1))
-    return np.asarray(D - np.diag(D.sum(axis=1)))
-
-
-DIFFERENTIATE = _differentiation()
+DIFFERENTIATE = differentiation(DEGREE)
 
 
 def common_time(tau: FloatArray) -> float | None:
@@ -47,18 +37,6 @@ def common_time(tau: FloatArray) -> float | None:
         return None
     bottom = lcm(*(f.denominator for f in found))
     return gcd(*(int(f * bottom) for f in found)) / bottom
-
-
-def _interpolation(x: FloatArray) -> FloatArray:
-    """Rows that map values at the nodes to values at x in [-1, 1]."""
-    gap = x[:, None] - NODES
-    hit = gap == 0
-    gap[hit] = 1.0
-    rows = _weights / gap
-    rows /= rows.sum(axis=1, keepdims=True)
-    on_node = hit.any(axis=1)
-    rows[on_node] = hit[on_node]
-    return rows
 
 
 class Lattice:
@@ -155,5 +133,5 @@ class Lattice:
         given = np.concatenate([self.states[used], delayed.reshape(used.size, -1, self.m)], axis=1)
         nodes = np.tensordot(given, self.out, axes=(1, 2)).transpose(0, 2, 3, 1) + self.straight
         local = 2.0 * (t[running] / self.h - window) - 1.0
-        out[running] = np.einsum("tj,tpjm->tpm", _interpolation(local), nodes[where])
+        out[running] = np.einsum("tj,tpjm->tpm", interpolation(local, DEGREE), nodes[where])
         return out
