@@ -19,7 +19,7 @@ from looplab.engine.frequency.response import (
     phase_rad,
     unit_asymptotes,
 )
-from looplab.engine.frequency.sampled import Sampled, UnitCurve, search_grid
+from looplab.engine.frequency.sampled import Sampled, UnitCurve, search_curve
 from looplab.engine.frequency.scalar import newton_in_bracket, scalar_loop
 from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.transfer_function import TransferFunction
@@ -134,9 +134,9 @@ def _search_range(L: TransferFunction) -> tuple[float, float, bool]:
     return 10.0 ** floor(log10(min(low, high / 10))), min(10.0 ** ceil(log10(high)), reach), overrun
 
 
-def _on_axis(roots: npt.NDArray[np.complex128]) -> FloatArray:
+def _on_axis(roots: npt.NDArray[np.complex128]) -> list[float]:
     """Frequencies of the roots on the positive imaginary axis [rad/time]."""
-    return np.asarray(roots.imag[(roots.imag > 0) & (np.abs(roots.real) <= AXIS_GAP * np.abs(roots))])
+    return [r.imag for r in roots.tolist() if r.imag > 0 and abs(r.real) <= AXIS_GAP * abs(r)]
 
 
 def _gain_crossovers(L: TransferFunction, grid: Sampled) -> FloatArray:
@@ -156,48 +156,62 @@ def _gain_crossovers(L: TransferFunction, grid: Sampled) -> FloatArray:
     return np.exp(refine_brackets(lambda x: log_magnitude(L, np.exp(x)), x[at], x[at + 1]))
 
 
-def _phase_crossovers(L: TransferFunction, omega: FloatArray, phase: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _phase_crossovers(curve: UnitCurve) -> tuple[list[float], list[float]]:
     """Frequencies and directions; several levels may lie in one interval."""
+    omega, phase = curve.omega, curve.phase
     band = np.floor((phase + np.pi) / (2.0 * np.pi))  # changes by one at each odd multiple of pi
-    change = band[1:] - band[:-1]
-    hit = change.nonzero()[0]
-    count = np.abs(change[hit]).astype(int)
-    at = np.repeat(hit, count)
-    direction = np.sign(change[at])
-    # The levels of one interval in the order in which they are met.
-    nth = np.arange(at.size) - np.repeat(np.cumsum(count) - count, count)
-    target = 2.0 * np.pi * np.where(direction < 0, band[at] - nth, band[at] + 1.0 + nth) - np.pi
-    a, b = np.log(omega[at]), np.log(omega[at + 1])
-
-    if at.size <= FEW:
-        f = scalar_loop(L).phase
-        ends = np.stack([phase[at], phase[at + 1]], axis=1).tolist()
-        brackets = zip(a.tolist(), b.tolist(), ends, target.tolist(), strict=True)
-        return np.array([exp(newton_in_bracket(f, *bracket)) for bracket in brackets]), direction
-    return np.exp(refine_brackets(lambda x: phase_rad(L, np.exp(x)) - target, a, b)), direction
+    left: list[int] = []
+    target: list[float] = []
+    direction: list[float] = []
+    for i in (band[1:] != band[:-1]).nonzero()[0].tolist():
+        first, last = int(band[i]), int(band[i + 1])
+        # The levels of one interval in the order in which they are met.
+        levels = range(first, last, -1) if last < first else range(first + 1, last + 1)
+        left += [i] * len(levels)
+        target += [(2 * level - 1) * pi for level in levels]
+        direction += [-1.0 if last < first else 1.0] * len(levels)
+    if len(left) <= FEW:
+        f = scalar_loop(curve.unit).phase
+        found = [
+            exp(newton_in_bracket(f, *np.log(omega[i : i + 2]).tolist(), phase[i : i + 2].tolist(), level))
+            for i, level in zip(left, target, strict=True)
+        ]
+        return found, direction
+    at, levels_ = np.array(left), np.array(target)
+    x = np.log(omega)
+    found_ = refine_brackets(lambda x: phase_rad(curve.unit, np.exp(x)) - levels_, x[at], x[at + 1])
+    return np.exp(found_).tolist(), direction
 
 
 @lru_cache(maxsize=64)
 def _of_unit_gain(unit: TransferFunction, low: float, high: float) -> PhaseCrossings:
-    omega = search_grid(unit, low, high)
-    phase = phase_rad(unit, omega)
-    where, direction = _phase_crossovers(unit, omega, phase)
+    curve = search_curve(unit, low, high)
+    phase = curve.phase.tolist()
     # As long as the curve lies on the real axis but for rounding it has crossed nothing.
-    off_axis = np.abs(np.mod(phase, 2.0 * np.pi) - np.pi) > ON_AXIS
-    start = int(np.argmax(off_axis)) if off_axis.any() else None
+    start = next((i for i, angle in enumerate(phase) if abs(angle % (2.0 * pi) - pi) > ON_AXIS), None)
     if start is None:
-        where, direction = np.zeros(0), np.zeros(0)
-    elif start:
-        later = where > omega[start]
-        where, direction = where[later], direction[later]
-    size = log_magnitude(unit, where)
-    for b in _on_axis(unit.poles):
-        size[np.abs(where - b) <= 2 * AXIS_GAP * b] = np.inf
-    for b in _on_axis(unit.zeros):
-        size[np.abs(where - b) <= 2 * AXIS_GAP * b] = -np.inf
-    start_phase = None if start is None else float(phase[start])
-    every = np.unique(np.concatenate([omega, where])) if where.size else omega
-    return PhaseCrossings(UnitCurve(unit, every), where, size, direction, start_phase)
+        return PhaseCrossings(curve, np.zeros(0), np.zeros(0), np.zeros(0), None)
+    where, direction = _phase_crossovers(curve)
+    if start:
+        passed = [w <= curve.omega[start] for w in where].count(True)
+        where, direction = where[passed:], direction[passed:]
+    return PhaseCrossings(
+        curve.with_points(where) if where else curve,
+        np.array(where),
+        np.array(_sizes(unit, where)),
+        np.array(direction),
+        phase[start],
+    )
+
+
+def _sizes(unit: TransferFunction, omega: list[float]) -> list[float]:
+    """ln|L| at crossings of the real axis; infinite on a pole or zero of the imaginary axis."""
+    size_at = scalar_loop(unit).log_magnitude
+    size = [size_at(log(w))[0] for w in omega]
+    for roots, limit in ((unit.poles, inf), (unit.zeros, -inf)):
+        for b in _on_axis(roots):
+            size = [limit if abs(w - b) <= 2 * AXIS_GAP * b else m for w, m in zip(omega, size, strict=True)]
+    return size
 
 
 @lru_cache(maxsize=64)
@@ -208,7 +222,7 @@ def crossings(L: TransferFunction) -> Crossings:
     low, high, overrun = _search_range(L)
     if L.gain == 0.0:
         empty = np.zeros(0)
-        grid = Sampled(UnitCurve(L.unit, search_grid(L.unit, low, high)), 0.0)
+        grid = Sampled(search_curve(L.unit, low, high), 0.0)
         return Crossings(grid, empty, empty, empty, empty, empty, None, False, False)
     unit = _of_unit_gain(L.unit, low, high)
     grid = Sampled(unit.curve, L.gain)

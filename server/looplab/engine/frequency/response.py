@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from contextlib import suppress
 from functools import lru_cache
-from math import ceil, floor, isfinite, log10, pi
+from math import ceil, floor, isfinite, log, log10, pi
 
 import numpy as np
 import numpy.typing as npt
@@ -14,9 +13,14 @@ from looplab.engine.errors import InvalidInput
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+Columns = tuple[FloatArray, FloatArray, FloatArray]
 
 POINTS_PER_DECADE = 40
 AXIS_GAP = 1e-9
+# Around a resonance, in units of the distance from the axis; beside a root on the axis, relative to its size.
+_AROUND = (-30.0, -10.0, -4.0, -2.0, -1.2, -0.7, -0.3, 0.0, 0.3, 0.7, 1.2, 2.0, 4.0, 10.0, 30.0)
+_HAIRS = (-1e-2, -1e-3, -1e-5, -AXIS_GAP, AXIS_GAP, 1e-5, 1e-3, 1e-2)
 # Squares of so many roots and frequencies within 1e-18 ... 1e18 can be multiplied.
 FEW_SQUARES = 8
 MAX_DELAY_POINTS = 4000
@@ -58,15 +62,22 @@ def phase_at_start(system: TransferFunction) -> float:
 
 
 @lru_cache(maxsize=64)
-def _turning_roots(unit: TransferFunction) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Of the roots off the origin imaginary part and size of the real part, (k, 1) each, and turns of phase, (k,)."""
-    turns: Counter[complex] = Counter()
-    for roots, sense in ((unit.zeros.tolist(), 1), (unit.poles.tolist(), -1)):
+def _turning_roots(unit: TransferFunction) -> Columns:
+    """Of the roots off the origin imaginary part, size of the real part and turns of phase."""
+    turns: dict[complex, float] = {}
+    for roots, sense in ((unit.zeros.tolist(), 1.0), (unit.poles.tolist(), -1.0)):
         for r in roots:
             if r:
-                turns[complex(abs(r.real), r.imag)] += -sense if r.real > 0 else sense
-    at = np.array([r for r, sense in turns.items() if sense], dtype=complex)[:, None]
-    return at.imag.copy(), at.real.copy(), np.array([float(sense) for sense in turns.values() if sense])
+                at = complex(abs(r.real), r.imag)
+                turns[at] = turns.get(at, 0.0) + (-sense if r.real > 0 else sense)
+    return _columns(turns)
+
+
+def _columns(weights: dict[complex, float]) -> Columns:
+    """Imaginary and real part of the points with a weight, shape (k, 1) each, and the weights, shape (k,)."""
+    used = [(r.imag, r.real, weight) for r, weight in weights.items() if weight]
+    imag, real, weight = np.array(used).reshape(-1, 3).T.copy()
+    return imag[:, None], real[:, None], weight
 
 
 def log_magnitude(system: TransferFunction, omega: FloatArray) -> FloatArray:
@@ -84,11 +95,55 @@ def log_magnitude(system: TransferFunction, omega: FloatArray) -> FloatArray:
     return out
 
 
+def rate(system: TransferFunction, omega: FloatArray) -> ComplexArray:
+    r"""How fast ln G turns and shrinks over ln omega, shape of omega.
+
+    .. math:: \omega\, \frac{G'(i\omega)}{G(i\omega)} = \frac{d\varphi}{d\ln\omega} - i\,\frac{d\ln|G|}{d\ln\omega}
+
+    Parameters
+    ----------
+    system : TransferFunction
+    omega : ndarray
+        Frequencies, > 0 [rad/time].
+
+    Returns
+    -------
+    ndarray of complex
+        Not finite on a root of the axis.
+
+    References
+    ----------
+    .. [1] H. W. Bode, Network Analysis and Feedback Amplifier Design, Van Nostrand 1945, ch. 14.
+    """
+    imag, real, weights = _weighted_roots(system.unit)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        rise = omega - imag
+        inverse = np.square(rise)
+        inverse += real * real
+        np.reciprocal(inverse, out=inverse)
+        rise *= inverse
+        out = np.empty(omega.shape, dtype=complex)
+        out.real = -(weights * real[:, 0]) @ inverse
+        out.real -= system.theta
+        out.imag = -weights @ rise
+        out *= omega
+    return out
+
+
+@lru_cache(maxsize=64)
+def _weighted_roots(unit: TransferFunction) -> Columns:
+    """Of the distinct roots imaginary and real part, and multiplicity, negative for poles."""
+    times: dict[complex, float] = {}
+    for roots, sense in ((unit.zeros.tolist(), 1.0), (unit.poles.tolist(), -1.0)):
+        for r in roots:
+            times[r] = times.get(r, 0.0) + sense
+    return _columns(times)
+
+
 @lru_cache(maxsize=64)
 def corners(unit: TransferFunction) -> tuple[float, float]:
     """The slowest and the fastest corner, the dead time's included [rad/time]; 1 where there is none."""
-    sizes = np.abs(np.concatenate([unit.zeros, unit.poles])).tolist()
-    found = [r for r in sizes if r] + ([1.0 / unit.theta] if unit.theta > 0 else [])
+    found = [abs(r) for r in unit.zeros.tolist() + unit.poles.tolist() if r] + ([1.0 / unit.theta] if unit.theta > 0 else [])
     return (min(found), max(found)) if found else (1.0, 1.0)
 
 
@@ -108,22 +163,24 @@ def frequency_range(system: TransferFunction) -> tuple[float, float]:
     return 10.0 ** (floor(log10(min(marks)) + 1e-9) - 1), 10.0 ** (ceil(log10(max(marks)) - 1e-9) + 1)
 
 
-def _resonances(system: TransferFunction) -> FloatArray:
+def _resonances(system: TransferFunction) -> list[float]:
     """Points around lightly damped roots, and a hair on either side of roots on the axis."""
-    roots = np.concatenate([system.zeros, system.poles])
-    upper = roots[(roots.imag > 0) & (np.abs(roots.real) < 0.4 * np.abs(roots))]
-    if not upper.size:
-        return upper.real
-    spread = np.array([0.0, 0.3, 0.7, 1.2, 2.0, 4.0, 10.0, 30.0])
-    spread = np.concatenate([-spread[:0:-1], spread])
-    points = [upper.imag[:, None] + np.abs(upper.real)[:, None] * spread]
-    on_axis = upper[np.abs(upper.real) <= AXIS_GAP * np.abs(upper)].imag
-    hair = np.array([-1e-2, -1e-3, -1e-5, -AXIS_GAP, AXIS_GAP, 1e-5, 1e-3, 1e-2])
-    points.append(on_axis[:, None] * (1.0 + hair))
-    return np.concatenate([p.ravel() for p in points])
+    points: list[float] = []
+    for r in system.zeros.tolist() + system.poles.tolist():
+        if r.imag > 0.0 and abs(r.real) < 0.4 * abs(r):
+            points += [r.imag + abs(r.real) * spread for spread in _AROUND]
+            if abs(r.real) <= AXIS_GAP * abs(r):
+                points += [r.imag * (1.0 + hair) for hair in _HAIRS]
+    return points
 
 
-def frequency_grid(system: TransferFunction, low: float | None = None, high: float | None = None) -> FloatArray:
+def frequency_grid(
+    system: TransferFunction,
+    low: float | None = None,
+    high: float | None = None,
+    *,
+    on_asymptotes: int = POINTS_PER_DECADE,
+) -> FloatArray:
     """A grid fine enough for curves and for bracketing: 40 a decade, denser at resonances and where dead time turns.
 
     Parameters
@@ -131,6 +188,9 @@ def frequency_grid(system: TransferFunction, low: float | None = None, high: flo
     system : TransferFunction
     low, high : float or None
         Ends of the grid [rad/time]; None takes frequency_range.
+    on_asymptotes : int
+        Points a decade where the curve follows its asymptotes: a decade below the slowest corner and beyond the
+        fastest.
 
     Returns
     -------
@@ -141,20 +201,34 @@ def frequency_grid(system: TransferFunction, low: float | None = None, high: flo
     InvalidInput
         low and high are not positive and increasing.
     """
-    auto_low, auto_high = frequency_range(system)
-    low, high = auto_low if low is None else low, auto_high if high is None else high
-    if not (np.isfinite(low) and np.isfinite(high) and 0 < low < high):
+    if low is None or high is None:
+        auto_low, auto_high = frequency_range(system)
+        low, high = auto_low if low is None else low, auto_high if high is None else high
+    if not (isfinite(low) and isfinite(high) and 0 < low < high):
         raise InvalidInput("the frequency range must be two positive numbers, the smaller first", field="omega")
-    decades = np.log10(high / low)
-    points = [10.0 ** np.linspace(np.log10(low), np.log10(high), int(np.ceil(decades * POINTS_PER_DECADE)) + 1)]
-    extra = _resonances(system)
-    points.append(extra[(extra > low) & (extra < high)])
+    slowest, fastest = corners(system.unit)
+    # With dead time the curve turns for ever: there are no asymptotes above its corner.
+    ends = (low, min(max(0.1 * slowest, low), high), high if system.theta > 0 else max(min(10.0 * fastest, high), low))
+    densities = (on_asymptotes, POINTS_PER_DECADE, on_asymptotes)
+    even = [np.array([log(low)])]
+    for start, stop, density in zip(ends, (*ends[1:], high), densities, strict=True):
+        if stop > start:
+            x, span = log(start), log(stop / start)
+            count = max(ceil(span * density / log(10.0) - 1e-9), 1)
+            even.append(x + span / count * np.arange(1, count + 1))
+    points = [np.exp(np.concatenate(even))]
+    points[0][0], points[0][-1] = low, high
+    extra = [w for w in _resonances(system) if low < w < high]
+    if extra:
+        points.append(np.array(extra))
     if system.theta > 0:
         # The phase must not turn by more than pi/8 between neighbours.
         step = np.pi / (8.0 * system.theta)
         start = step / (10 ** (1.0 / POINTS_PER_DECADE) - 1.0)
         if start < high:
             points.append(np.arange(start, min(high, start + MAX_DELAY_POINTS * step), step))
+    if len(points) == 1:
+        return points[0]
     grid = np.sort(np.concatenate(points))
     keep = np.ones(grid.size, dtype=bool)
     np.greater(grid[1:] - grid[:-1], 1e-13 * grid[1:], out=keep[1:])

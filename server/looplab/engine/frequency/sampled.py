@@ -9,9 +9,9 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from looplab.engine.frequency.response import frequency_grid, log_magnitude, phase_at_start, phase_rad
+from looplab.engine.frequency.response import frequency_grid, log_magnitude, phase_at_start, phase_rad, rate
 from looplab.engine.frequency.scalar import newton_in_bracket, scalar_loop
-from looplab.engine.systems.transfer_function import TransferFunction
+from looplab.engine.systems.transfer_function import SMALL_ORDER, TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -19,6 +19,8 @@ Array = TypeVar("Array", FloatArray, ComplexArray)
 
 
 MOST_EXTREMA = 200
+# Points where the curve follows its asymptotes: enough to bracket crossings.
+FEW_PER_DECADE = 10
 DECIBELS = 20.0 / log(10.0)
 
 
@@ -58,6 +60,9 @@ class UnitCurve:
         if self._parts:
             first, second = self._parts
             return _read_only(first.log_magnitude + second.log_magnitude)
+        # A product of few factors stays in double precision, but it may be zero or infinite on a root of the axis.
+        if max(self.unit.zeros.size, self.unit.order) <= SMALL_ORDER and self.is_finite and self.value.all():
+            return _read_only(np.log(self.size))
         return _read_only(log_magnitude(self.unit, self.omega))
 
     @cached_property
@@ -100,7 +105,23 @@ class UnitCurve:
     @cached_property
     def rate(self) -> ComplexArray:
         """omega G'/G at j omega."""
-        return _read_only(self.omega * self.unit.log_derivative((1j * self.omega).astype(complex)))
+        return _read_only(rate(self.unit, self.omega))
+
+    def with_points(self, more: list[float]) -> UnitCurve:
+        """The curve with a few more frequencies [rad/time]; phase and rate, where known, are not computed again."""
+        omega = np.concatenate([self.omega, more])
+        order = omega.argsort(kind="stable")
+        omega = omega[order]
+        new = omega[1:] > omega[:-1]
+        if not new.all():
+            keep = np.concatenate([[True], new])
+            order, omega = order[keep], omega[keep]
+        out, loop = UnitCurve(self.unit, omega), scalar_loop(self.unit)
+        for name, at in (("phase", loop.phase), ("rate", loop.rate)):
+            if name in self.__dict__:
+                known = np.concatenate([self.__dict__[name], [at(log(w))[0] for w in more]])
+                out.__dict__[name] = _read_only(known[order])
+        return out
 
 
 class Sampled:
@@ -135,26 +156,25 @@ class Sampled:
 
 
 @lru_cache(maxsize=64)
-def search_grid(unit: TransferFunction, low: float, high: float) -> FloatArray:
-    """The adaptive grid with every extremum of magnitude and phase on it, so that no pair of crossings hides."""
-    omega = frequency_grid(unit, low, high)
-    loop = scalar_loop(unit)
+def search_curve(unit: TransferFunction, low: float, high: float) -> UnitCurve:
+    """The curve on the adaptive grid with every extremum of magnitude and phase on it: no pair of crossings hides."""
+    curve = UnitCurve(unit, frequency_grid(unit, low, high, on_asymptotes=FEW_PER_DECADE))
+    omega, loop = curve.omega, scalar_loop(unit)
     turning: list[float] = []
-    with np.errstate(all="ignore"):
-        rate = omega * unit.log_derivative((1j * omega).astype(complex))
-    for slope, on_grid in ((loop.magnitude_slope, -rate.imag), (loop.phase_slope, rate.real)):
+    for slope, on_grid in ((loop.magnitude_slope, -curve.rate.imag), (loop.phase_slope, curve.rate.real)):
         falls = on_grid < 0
-        at = np.flatnonzero((falls[1:] != falls[:-1]) & (on_grid[1:] != 0) & (on_grid[:-1] != 0))
+        at = (falls[1:] != falls[:-1]).nonzero()[0]
         if at.size <= MOST_EXTREMA:
             for i in at.tolist():
                 ends = on_grid[i : i + 2].tolist()
-                turning.append(exp(newton_in_bracket(slope, log(omega[i]), log(omega[i + 1]), ends)))
-    return _read_only(np.unique(np.concatenate([omega, turning])) if turning else omega)
+                if all(ends):
+                    turning.append(exp(newton_in_bracket(slope, log(omega[i]), log(omega[i + 1]), ends)))
+    return curve.with_points(turning) if turning else curve
 
 
 @lru_cache(maxsize=64)
 def _on_grid_of(unit: TransferFunction, grid_of: TransferFunction, low: float, high: float) -> UnitCurve:
-    return UnitCurve(unit, search_grid(grid_of, low, high))
+    return UnitCurve(unit, search_curve(grid_of, low, high).omega)
 
 
 @lru_cache(maxsize=32)

@@ -74,15 +74,15 @@ class ScalarLoop:
 
     def magnitude_slope(self, x: float) -> tuple[float, float]:
         """d ln |L| / dx and its slope."""
-        rate, bend = self._rate(x)
+        rate, bend = self.rate(x)
         return -rate.imag, -bend.imag
 
     def phase_slope(self, x: float) -> tuple[float, float]:
         """d arg L / dx and its slope."""
-        rate, bend = self._rate(x)
+        rate, bend = self.rate(x)
         return rate.real, bend.real
 
-    def _rate(self, x: float) -> tuple[complex, complex]:
+    def rate(self, x: float) -> tuple[complex, complex]:
         """omega L'/L and its slope."""
         omega = math.exp(x)
         s = complex(0.0, omega)

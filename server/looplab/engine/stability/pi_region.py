@@ -16,6 +16,8 @@ from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
 
+ROUNDING = 1e-14
+
 
 @dataclass(frozen=True)
 class PIBoundary:
@@ -83,7 +85,9 @@ def pi_boundary(plant: TransferFunction, omega: npt.ArrayLike | None = None) -> 
     with np.errstate(all="ignore"):
         inverse = 1.0 / plant.response(w)
         Kc, Ki = -inverse.real, w * inverse.imag
-        tau_I = np.where(Kc * Ki > 0, Kc / Ki, np.nan)
+        # Where 1/P is real or imaginary but for rounding, the curve passes through Ki = 0 or Kc = 0.
+        off_axes = np.minimum(np.abs(inverse.real), np.abs(inverse.imag)) > ROUNDING * np.abs(inverse)
+        tau_I = np.where(off_axes & (Kc * Ki > 0), Kc / Ki, np.nan)
     finite = np.isfinite(Kc) & np.isfinite(Ki)
     w, Kc, Ki, tau_I = w[finite], Kc[finite], Ki[finite], tau_I[finite]
     return PIBoundary(w, np.where(np.isfinite(tau_I), Kc, np.nan), tau_I, Ki)

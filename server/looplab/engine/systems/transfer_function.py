@@ -226,7 +226,7 @@ class TransferFunction:
         """
         s_array = np.asarray(s, dtype=complex)
         if s_array.ndim == 1 and 0 < max(self.zeros.size, self.poles.size) <= SMALL_ORDER:
-            return self._broadcast(s_array)
+            return self._of_low_order(s_array)
         both = min(self.zeros.size, self.poles.size)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             value = self.gain * np.exp(-self.theta * s_array)
@@ -238,18 +238,18 @@ class TransferFunction:
                 value = value / (s_array - p)
         return complex(value) if value.ndim == 0 else value
 
-    def _broadcast(self, s: ComplexArray) -> ComplexArray:
-        """The same on arrays of roots at once, for orders that cannot overflow."""
-        both = min(self.zeros.size, self.poles.size)
-        zeros, poles = self.zeros[:, None], self.poles[:, None]
+    def _of_low_order(self, s: ComplexArray) -> ComplexArray:
+        """The same for orders whose products cannot overflow: one division."""
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             value = self.gain * np.exp(-self.theta * s) if self.theta else np.full(s.shape, self.gain, dtype=complex)
-            if both:
-                value *= ((s - zeros[:both]) / (s - poles[:both])).prod(axis=0)
-            if self.zeros.size > both:
-                value *= (s - zeros[both:]).prod(axis=0)
-            if self.poles.size > both:
-                value /= (s - poles[both:]).prod(axis=0)
+            for z in self.zeros.tolist():
+                value *= s - z
+            if self.poles.size:
+                first, *others = self.poles.tolist()
+                below = s - first
+                for p in others:
+                    below *= s - p
+                value /= below
         return np.asarray(value)
 
     def response(self, omega: npt.ArrayLike) -> ComplexArray:
