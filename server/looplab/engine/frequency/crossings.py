@@ -170,15 +170,15 @@ def _phase_crossovers(curve: UnitCurve) -> tuple[list[float], list[float]]:
         left += [i] * len(levels)
         target += [(2 * level - 1) * pi for level in levels]
         direction += [-1.0 if last < first else 1.0] * len(levels)
+    x = np.log(omega)
     if len(left) <= FEW:
         f = scalar_loop(curve.unit).phase
         found = [
-            exp(newton_in_bracket(f, *np.log(omega[i : i + 2]).tolist(), phase[i : i + 2].tolist(), level))
+            exp(newton_in_bracket(f, float(x[i]), float(x[i + 1]), phase[i : i + 2].tolist(), level))
             for i, level in zip(left, target, strict=True)
         ]
         return found, direction
     at, levels_ = np.array(left), np.array(target)
-    x = np.log(omega)
     found_ = refine_brackets(lambda x: phase_rad(curve.unit, np.exp(x)) - levels_, x[at], x[at + 1])
     return np.exp(found_).tolist(), direction
 

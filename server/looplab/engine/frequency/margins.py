@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
-from math import degrees, exp, isfinite, log, log10, pi
+from math import degrees, exp, isfinite, log, log10, pi, sqrt
 
 import numpy as np
 import numpy.typing as npt
@@ -81,25 +81,32 @@ def _peaks_on(grid: Sampled) -> list[tuple[float, float]]:
     out = []
     with np.errstate(all="ignore"):
         away = np.abs(1.0 + k * (twice_real + k * square))
-        both = (("S", 1.0 / away, first + k * second > 0.0), ("T", square / away, third + k * fourth < 0.0))
-    for part, size, rising in both:
+        both = (("S", 1.0 / away, k * (first + k * second)), ("T", square / away, -third - k * fourth))
+    for part, size, slopes in both:
         if not grid.curve.is_finite:
             size[np.isnan(size)] = 0.0
-        summit = (rising[:-1] > rising[1:]).nonzero()[0]
-        where = float(omega[size.argmax()])
-        top = loop.peak_size(log(where), k, part)
+        highest = int(size.argmax())
+        on_grid = sqrt(size[highest]) * (1.0 if part == "S" else k)
+        top = where = 0.0
+        rising = slopes > 0.0
         slope = partial(loop.sensitivity_slope, gain=k, part=part)
-        for i in summit[np.argsort(-size[summit])].tolist():
+        summits = (rising[:-1] > rising[1:]).nonzero()[0].tolist()
+        for i in sorted(summits, key=size.__getitem__, reverse=True):
             # The chord bounds how near -1 the curve may come between two points: most summits cannot win.
             start, end = (k * v for v in value[i : i + 2].tolist())
             nearest = 0.5 * (abs(1.0 + start) + abs(1.0 + end)) - 0.6 * abs(end - start)
-            if nearest > 0.0 and (1.0 if part == "S" else 1.1 * max(abs(start), abs(end))) <= top * nearest:
+            reach = 1.0 if part == "S" else 1.1 * max(abs(start), abs(end))
+            if nearest > 0.0 and reach <= max(top, on_grid) * nearest:
                 continue
-            low, high = log(omega[i]), log(omega[i + 1])
-            x = newton_in_bracket(slope, low, high, (slope(low)[0], slope(high)[0]))
+            x = newton_in_bracket(slope, log(omega[i]), log(omega[i + 1]), slopes[i : i + 2].tolist())
             peak = loop.peak_size(x, k, part)
             if peak > top:
                 top, where = peak, exp(x)
+        if top < on_grid:
+            end = float(omega[highest])
+            peak = loop.peak_size(log(end), k, part)
+            if peak > top:
+                top, where = peak, end
         out.append((top, where))
     return out
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from looplab.engine.frequency.crossings import OFTEN, crossings, fastest_root
 from looplab.engine.frequency.response import AXIS_GAP
-from looplab.engine.frequency.sampled import UnitCurve
+from looplab.engine.frequency.sampled import UnitCurve, read_only
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
@@ -24,7 +24,7 @@ LARGEST_DRAWN = 1e6
 OUT_OF_PICTURE = 50.0
 # Near the origin steps of this size are not seen.
 SMALLEST_SEEN = 1e-3
-# A gap of the grid is filled with so many points at most.
+# A step of the grid is cut into so many at most.
 MOST_PARTS = 32
 # The points of a curve are chosen anew for every fourth root of e that the gain moves by.
 LEVELS = 4
@@ -188,27 +188,22 @@ def _drawn(curve: UnitCurve, level: int, step: float, turns_for_ever: bool) -> t
     if not omega.size:
         return omega, np.stack([value.real, value.imag])
     near, chord = _chords(value, curve.size[drawn], curve.phase[drawn], unit.theta)
-    near = gain * near
-    length = chord * (gain / step) / np.sqrt((near + SMALLEST_SEEN) * (1.0 + near))
+    near *= gain
+    length = chord * (gain / step)
+    length /= np.sqrt((near + SMALLEST_SEEN) * (1.0 + near))
     length[near > OUT_OF_PICTURE] *= 0.1
-    # A point stays where the length from the start reaches another whole number, and beside a gap to be filled.
-    whole = np.floor(np.minimum(length, 1.0).cumsum())
-    kept = np.zeros(omega.size, dtype=bool)
-    kept[0] = kept[-1] = True
-    kept[1:-1] = (whole[1:] > whole[:-1]) | (length[1:] > 1.0)
-    at = kept.nonzero()[0]
-    # Parts that each interval between the points that stay is cut into, evenly over ln omega.
-    place = np.zeros(at.size, dtype=int)
-    np.ceil(length[at[:-1]].clip(1.0, MOST_PARTS)).cumsum(out=place[1:], dtype=int)
-    number = np.arange(place[-1] + 1)
-    new = np.ones(number.size, dtype=bool)
-    new[place] = False
-    out, values = np.empty(number.size), np.empty(number.size, dtype=complex)
-    out[place], values[place] = omega[at], value[at]
-    between = np.exp(np.interp(new.nonzero()[0], place, np.log(omega[at])))
-    out[new], values[new] = between, unit.response(between)
-    out.setflags(write=False)
-    return out, np.stack([values.real, values.imag])
+    # Along the curve in units of the longest step, and points one such unit apart.
+    along = np.zeros(omega.size)
+    np.minimum(length, MOST_PARTS, out=length).cumsum(out=along[1:])
+    count = max(ceil(along[-1]), 1)
+    x = np.interp(np.arange(1, count) * (along[-1] / count), along, np.log(omega))
+    omega = np.concatenate([omega[:1], np.exp(x), omega[-1:]])
+    value = unit.response(omega)
+    if not drawn.all():
+        # Some may lie in the gap at a pole on the axis.
+        inside = np.abs(value) < LARGEST_DRAWN / gain
+        omega, value = omega[inside], value[inside]
+    return read_only(omega), np.array([value.real, value.imag])
 
 
 def _chords(value: ComplexArray, size: FloatArray, phase: FloatArray, theta: float) -> tuple[FloatArray, FloatArray]:

@@ -143,7 +143,9 @@ def _weighted_roots(unit: TransferFunction) -> Columns:
 @lru_cache(maxsize=64)
 def corners(unit: TransferFunction) -> tuple[float, float]:
     """The slowest and the fastest corner, the dead time's included [rad/time]; 1 where there is none."""
-    found = [abs(r) for r in unit.zeros.tolist() + unit.poles.tolist() if r] + ([1.0 / unit.theta] if unit.theta > 0 else [])
+    found = [abs(r) for r in unit.zeros.tolist() + unit.poles.tolist() if r] + (
+        [1.0 / unit.theta] if unit.theta > 0 else []
+    )
     return (min(found), max(found)) if found else (1.0, 1.0)
 
 

@@ -24,7 +24,8 @@ FEW_PER_DECADE = 10
 DECIBELS = 20.0 / log(10.0)
 
 
-def _read_only(array: Array) -> Array:
+def read_only(array: Array) -> Array:
+    """The array itself, which several callers will share."""
     array.setflags(write=False)
     return array
 
@@ -50,7 +51,7 @@ class UnitCurve:
     def __init__(
         self, unit: TransferFunction, omega: FloatArray, parts: tuple[UnitCurve, UnitCurve] | None = None
     ) -> None:
-        self.unit, self.omega = unit, _read_only(omega)
+        self.unit, self.omega = unit, read_only(omega)
         # Of two systems in series those of each: what was computed of one of them is not computed again.
         self._parts = parts if parts and all(part.is_finite and part.value.all() for part in parts) else None
 
@@ -59,11 +60,11 @@ class UnitCurve:
         """ln|G|."""
         if self._parts:
             first, second = self._parts
-            return _read_only(first.log_magnitude + second.log_magnitude)
+            return read_only(first.log_magnitude + second.log_magnitude)
         # A product of few factors stays in double precision, but it may be zero or infinite on a root of the axis.
         if max(self.unit.zeros.size, self.unit.order) <= SMALL_ORDER and self.is_finite and self.value.all():
-            return _read_only(np.log(self.size))
-        return _read_only(log_magnitude(self.unit, self.omega))
+            return read_only(np.log(self.size))
+        return read_only(log_magnitude(self.unit, self.omega))
 
     @cached_property
     def phase(self) -> FloatArray:
@@ -71,16 +72,16 @@ class UnitCurve:
         if self._parts:
             first, second = self._parts
             turns = phase_at_start(self.unit) - phase_at_start(first.unit) - phase_at_start(second.unit)
-            return _read_only(first.phase + second.phase + turns)
-        return _read_only(phase_rad(self.unit, self.omega))
+            return read_only(first.phase + second.phase + turns)
+        return read_only(phase_rad(self.unit, self.omega))
 
     @cached_property
     def value(self) -> ComplexArray:
         """G(j omega)."""
         if self._parts:
             first, second = self._parts
-            return _read_only(first.value * second.value)
-        return _read_only(self.unit.response(self.omega))
+            return read_only(first.value * second.value)
+        return read_only(self.unit.response(self.omega))
 
     @cached_property
     def is_finite(self) -> bool:
@@ -90,22 +91,22 @@ class UnitCurve:
     @cached_property
     def size(self) -> FloatArray:
         """|G|."""
-        return _read_only(np.abs(self.value))
+        return read_only(np.abs(self.value))
 
     @cached_property
     def decibels(self) -> FloatArray:
         """20 log10 |G|."""
-        return _read_only(self.log_magnitude * DECIBELS)
+        return read_only(self.log_magnitude * DECIBELS)
 
     @cached_property
     def phase_deg(self) -> FloatArray:
         """Phase [deg]."""
-        return _read_only(np.degrees(self.phase))
+        return read_only(np.degrees(self.phase))
 
     @cached_property
     def rate(self) -> ComplexArray:
         """omega G'/G at j omega."""
-        return _read_only(rate(self.unit, self.omega))
+        return read_only(rate(self.unit, self.omega))
 
     def with_points(self, more: list[float]) -> UnitCurve:
         """The curve with a few more frequencies [rad/time]; phase and rate, where known, are not computed again."""
@@ -120,7 +121,7 @@ class UnitCurve:
         for name, at in (("phase", loop.phase), ("rate", loop.rate)):
             if name in self.__dict__:
                 known = np.concatenate([self.__dict__[name], [at(log(w))[0] for w in more]])
-                out.__dict__[name] = _read_only(known[order])
+                out.__dict__[name] = read_only(known[order])
         return out
 
 

@@ -57,9 +57,10 @@ class _PerGain:
         size = np.abs(at_k[:n]) + np.abs(at_k[n])[:, None] * np.abs(at_k[n + 1])
         _, _, _, scale, _ = dgebal(size[:states, :states], scale=1, permute=0)
         for part in (self.fixed, self.moved):
+            # Row n is a column of the state equation. Scales are powers of two: nothing is rounded.
             part[:states] /= scale[:, None]
-            part[[*range(n), n + 1, n + 2], :states] *= scale
-            part[n, :states] /= scale
+            part[:, :states] *= scale
+            part[n, :states] /= scale * scale
 
 
 @lru_cache(maxsize=64)
