@@ -32,7 +32,8 @@ def test_a_quick_run_writes_finite_figures(tmp_path: Path) -> None:
     assert result.exit_code == 0, result.output
     figures = json.loads(out.read_text())
     assert all(math.isfinite(n) for n in walk(figures))
-    assert {r["what"] for r in figures["moves"]} >= {"gain move, no locus", "gain move, with locus"}
+    assert {r["what"] for r in figures["moves"]} >= {move.name for move in moves.MOVES}
+    assert {r["way"] for r in figures["moves"]} == {*moves.WAYS, ""}
     assert "gain move, with locus" in result.output
     for r in figures["moves"]:
         assert r["ratio"] > 0

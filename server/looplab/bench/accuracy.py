@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-ORDERS = (1, 3, 5, 10)
+ORDERS = range(1, 11)
 CASES: list[dict[str, Any]] = json.loads((Path(__file__).parent / "reference.json").read_text())["cases"]
 
 

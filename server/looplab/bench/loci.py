@@ -72,6 +72,7 @@ def measure(rounds: int, tick: Callable[[str], None]) -> list[dict[str, Any]]:
         timed = interleave(locus.ours, locus.peer, stretches, advance)
         rows.append(
             {
+                "way": "",
                 "loop": locus.name,
                 "what": "root locus",
                 "goal": None,

@@ -113,12 +113,12 @@ def gain_move(scenario: Scenario, locus: bool, polynomials: bool = False) -> Cal
     return _quiet(lambda Kc: work.move(Kc, locus))
 
 
-def full_recompute(scenario: Scenario, locus: bool) -> Callable[[float], Any]:
+def full_recompute(scenario: Scenario, locus: bool, polynomials: bool = False) -> Callable[[float], Any]:
     """A function of Kc that does the same for a new plant."""
     seen = [0]
 
     def move(Kc: float) -> Any:
         seen[0] += 1
-        return Peer(scenario, 1.0 + 1e-7 * seen[0]).move(Kc, locus)
+        return Peer(scenario, 1.0 + 1e-7 * seen[0], polynomials=polynomials).move(Kc, locus)
 
     return _quiet(move)

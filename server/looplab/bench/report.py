@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from looplab.bench.column import NOTE
+from looplab.bench.moves import WAYS
 from looplab.bench.nonlinear_loops import RTOL
 
 
@@ -21,7 +22,8 @@ def _table(title: str, left: tuple[str, ...], right: tuple[str, ...], caption: s
 
 
 def _moves(rows: list[dict[str, Any]], title: str, peer: str, note: str = "") -> Table:
-    notes = " ".join(f"{r['what'].capitalize()}: {r['note']}." for r in rows if r["note"])
+    said = dict.fromkeys(f"{r['what'].capitalize()}: {r['note']}." for r in rows if r["note"])
+    notes = " ".join(said)
     caption = f"Processor time: medians in ms, their ratio, quartiles of the ratio call by call. {notes}{note}"
     columns = ("looplab", peer, "ratio", "quartiles", "goal")
     table = _table(title, ("",), columns, caption)
@@ -95,10 +97,18 @@ def show(console: Console, results: dict[str, Any]) -> None:
     threads = ", ".join(sorted(set(machine["blas_threads"].values())))
     console.print(f"Python {machine['python']}, {machine['system']}, {machine['cores']} cores, BLAS threads {threads}")
     console.print(f"{packages}\n")
-    work = _moves(results["moves"], "The same work by looplab and by python-control, burst by burst", "control")
+    ways = dict.fromkeys(r["way"] for r in results["moves"])
+    work = [
+        _moves(
+            [r for r in results["moves"] if r["way"] == way],
+            f"The same work by looplab and by python-control, burst by burst{f': {WAYS[way]}' if way else ''}",
+            "control",
+        )
+        for way in ways
+    ]
     column_title = "A distillation column of 44 states, 500 points"
     simulated = _moves(results["column"], column_title, "other", f"{NOTE.capitalize()}.")
-    for table in (work, simulated, _control(results["control"]), _accuracy(results["accuracy"])):
+    for table in (*work, simulated, _control(results["control"]), _accuracy(results["accuracy"])):
         console.print(table, "")
     if results["server"]:
         console.print(_server(results["server"]), "")

@@ -179,7 +179,7 @@ def margins(L: TransferFunction) -> Margins:
     if L.gain == 0.0:
         hidden = L.poles
     # A hidden mode on the axis does not decay, and the curve does not know of it.
-    stays = bool((hidden.real >= -AXIS_GAP * np.abs(hidden)).any())
+    stays = any(p.real >= -AXIS_GAP * abs(p) for p in hidden.tolist())
     stable = count.Z == 0 and not count.through_minus_one and not stays
     reasons: dict[str, str] = {}
 

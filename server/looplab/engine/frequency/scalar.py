@@ -20,18 +20,18 @@ class ScalarLoop:
     """L of unit gain at s = j exp(x), as functions of x = ln omega, each with its slope."""
 
     def __init__(self, unit: TransferFunction) -> None:
-        self.zeros: list[complex] = unit.zeros.tolist()
-        self.poles: list[complex] = unit.poles.tolist()
+        zeros, poles = unit.zeros.tolist(), unit.poles.tolist()
         self.sign, self.theta = unit.gain, unit.theta
+        # Each root and whether it is a zero, both in turn: their product neither overflows nor underflows.
+        both = zip_longest([(z, True) for z in zeros], [(p, False) for p in poles])
+        self.factors: list[tuple[complex, bool]] = [factor for pair in both for factor in pair if factor]
         self.anchor = -0.5 * math.pi * unit.origin_order - (math.pi if unit.origin_gain < 0 else 0.0)
         # Real part, its size, imaginary part and +1 for a zero, -1 for a pole.
-        self.roots = [
-            (abs(r.real), r.imag, sign) for roots, sign in ((self.zeros, 1.0), (self.poles, -1.0)) for r in roots
-        ]
+        self.roots = [(abs(r.real), r.imag, sign) for roots, sign in ((zeros, 1.0), (poles, -1.0)) for r in roots]
         # The same of roots off the origin, with the sense in which each turns.
         self.turning = [
             (abs(r.real), r.imag, -sign if r.real > 0 else sign)
-            for roots, sign in ((self.zeros, 1.0), (self.poles, -1.0))
+            for roots, sign in ((zeros, 1.0), (poles, -1.0))
             for r in roots
             if r
         ]
@@ -62,12 +62,13 @@ class ScalarLoop:
         """L and q = L'/L at s."""
         value = self.sign * gain * cmath.exp(-self.theta * s)
         q = complex(-self.theta)
-        for z, p in zip_longest(self.zeros, self.poles):
-            if z is not None:
-                value *= s - z
-                q += 1.0 / ((s - z) or TINY)
-            if p is not None:
-                part = 1.0 / ((s - p) or TINY)
+        for r, is_zero in self.factors:
+            apart = (s - r) or TINY
+            if is_zero:
+                value *= apart
+                q += 1.0 / apart
+            else:
+                part = 1.0 / apart
                 value *= part
                 q -= part
         return value, q
@@ -87,25 +88,28 @@ class ScalarLoop:
         omega = math.exp(x)
         s = complex(0.0, omega)
         q, dq = complex(-self.theta), 0j
-        for roots, sign in ((self.zeros, 1.0), (self.poles, -1.0)):
-            for r in roots:
-                part = 1.0 / ((s - r) or TINY)
-                q += sign * part
-                dq -= sign * part * part
+        for r, is_zero in self.factors:
+            part = 1.0 / ((s - r) or TINY)
+            if is_zero:
+                q += part
+                dq -= part * part
+            else:
+                q -= part
+                dq += part * part
         return omega * q, omega * (q + s * dq)
 
     def value_and_rates(self, s: complex, gain: float) -> tuple[complex, complex, complex]:
         """L, q = L'/L and q' at s."""
         value = self.sign * gain * cmath.exp(-self.theta * s)
         q, dq = complex(-self.theta), 0j
-        for z, p in zip_longest(self.zeros, self.poles):
-            if z is not None:
-                value *= s - z
-                part = 1.0 / ((s - z) or TINY)
+        for r, is_zero in self.factors:
+            apart = (s - r) or TINY
+            part = 1.0 / apart
+            if is_zero:
+                value *= apart
                 q += part
                 dq -= part * part
-            if p is not None:
-                part = 1.0 / ((s - p) or TINY)
+            else:
                 value *= part
                 q -= part
                 dq += part * part

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from math import isfinite
 
 import numpy as np
@@ -113,8 +113,12 @@ class PID:
 
     def to_transfer_function(self) -> TransferFunction:
         """Gc(s) from the error e = r - y to u, as zeros, poles and gain."""
-        unit = _per_gain(self.tau_I, self.tau_D, self.alpha, self.form)
-        return unit.with_gain(self.sign * self.Kc * unit.gain)
+        return self.per_gain.with_gain(self.sign * self.Kc * self.per_gain.gain)
+
+    @cached_property
+    def per_gain(self) -> TransferFunction:
+        """Gc(s) for Kc = 1 and reverse action: one object for all gains."""
+        return _per_gain(self.tau_I, self.tau_D, self.alpha, self.form)
 
     def to_latex(self, digits: int = 4) -> str:
         """The controller with its numbers, in the form it is used."""

@@ -68,6 +68,14 @@ class FeedbackLoop:
                 hint="change the gain a little, or give the plant a lag",
             )
 
+    def __hash__(self) -> int:
+        return self._hash
+
+    @cached_property
+    def _hash(self) -> int:
+        """A loop is the key of several caches."""
+        return hash((self.plant, self.controller, self.actuator, self.sensor, self.disturbance))
+
     @property
     def theta(self) -> float:
         """Total dead time in the loop [time]."""
@@ -123,8 +131,5 @@ class FeedbackLoop:
     def locus_system(self) -> TransferFunction:
         """L per unit of that gain: what the root locus is drawn for."""
         if isinstance(self.controller, PID):
-            unit = PID(
-                1.0, self.controller.tau_I, self.controller.tau_D, self.controller.alpha, self.controller.form
-            ).to_transfer_function()
-            return unit * self.path
+            return self.controller.per_gain * self.path
         return TransferFunction(self.C.zeros, self.C.poles, 1.0, self.C.theta) * self.path

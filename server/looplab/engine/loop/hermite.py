@@ -23,7 +23,7 @@ _FOR_ROOTS = np.vstack([_AT_END, _WITH_SLOPE, _UP_TO])
 
 def _before_root(cubics: FloatArray) -> FloatArray:
     """Integrals of p and x p from 0 to the root in [0, 1] of cubics p that change sign there once, shape (2, m)."""
-    forms = _FOR_ROOTS @ cubics
+    forms = _FOR_ROOTS.dot(cubics)
     start = cubics[0]
     x = start / (start - forms[0])
     a, b, c, d = forms[1:9].reshape(4, 2, -1)
@@ -153,7 +153,7 @@ class HermiteCurves:
         """
         m = self.h.size
         cubics = self.cubics.reshape(4, -1)[:, : count * m]
-        parts = _TO_INTEGRALS @ cubics
+        parts = _TO_INTEGRALS.dot(cubics)
         whole = parts[:2]
         above = self.y[:count] > 0.0
         flat = (above[:, 1:] != above[:, :-1]).ravel().nonzero()[0]

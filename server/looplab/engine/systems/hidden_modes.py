@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from looplab.engine.systems.polynomial import ComplexArray
@@ -22,13 +24,20 @@ def split_hidden_modes(L: TransferFunction) -> tuple[TransferFunction, ComplexAr
     hidden : ndarray of complex, shape (k,)
         Poles that stay where they are for every gain [rad/time].
     """
-    zeros, poles = L.zeros.tolist(), L.poles.tolist()
-    hidden = []
-    for z in L.zeros.tolist():
+    reduced, hidden = _split(L.unit)
+    return L if reduced is None else reduced.with_gain(L.gain), hidden
+
+
+@lru_cache(maxsize=64)
+def _split(unit: TransferFunction) -> tuple[TransferFunction | None, ComplexArray]:
+    """The same for a gain of 1 or -1; None where nothing cancels."""
+    zeros, poles = unit.zeros.tolist(), unit.poles.tolist()
+    found = []
+    for z in unit.zeros.tolist():
         if z in poles:
             zeros.remove(z)
             poles.remove(z)
-            hidden.append(z)
-    if not hidden:
-        return L, np.zeros(0, dtype=complex)
-    return TransferFunction(zeros, poles, L.gain, L.theta), np.array(hidden, dtype=complex)
+            found.append(z)
+    hidden = np.array(found, dtype=complex)
+    hidden.setflags(write=False)
+    return TransferFunction(zeros, poles, unit.gain, unit.theta) if found else None, hidden
