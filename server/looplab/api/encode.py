@@ -22,16 +22,14 @@ def complex_pairs(values: Any) -> list[list[float]]:
 
 
 def _as_f4(value: Any) -> Any:
-    if isinstance(value, np.ndarray):
-        if np.abs(value).max(initial=0.0) > LARGEST_F4:
-            return value
-        data = np.ascontiguousarray(value, dtype="<f4")
-        return {"dtype": "f4", "bdata": base64.b64encode(data.tobytes()).decode()}
-    if isinstance(value, dict):
-        return {key: _as_f4(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_as_f4(item) for item in value]
-    return value
+    """What orjson does not know by itself: arrays as base64 float32, numpy's numbers as Python's."""
+    if isinstance(value, np.generic):
+        return value.item()
+    if not isinstance(value, np.ndarray):
+        raise TypeError(f"{type(value).__name__} is not JSON")
+    if value.dtype.kind != "f" or np.abs(value).max(initial=0.0) > LARGEST_F4:
+        return value.tolist()
+    return {"dtype": "f4", "bdata": base64.b64encode(value.astype("<f4").tobytes()).decode()}
 
 
 def json_response(content: Any, arrays: Arrays = "list") -> Response:
@@ -40,6 +38,7 @@ def json_response(content: Any, arrays: Arrays = "list") -> Response:
     Infinite and undefined numbers must be None with a reason by now; orjson would write what is left as null.
     """
     if arrays == "f4":
-        content = _as_f4(content)
-    body = orjson.dumps(content, option=orjson.OPT_SERIALIZE_NUMPY | orjson.OPT_NON_STR_KEYS)
+        body = orjson.dumps(content, default=_as_f4, option=orjson.OPT_NON_STR_KEYS)
+    else:
+        body = orjson.dumps(content, option=orjson.OPT_SERIALIZE_NUMPY | orjson.OPT_NON_STR_KEYS)
     return Response(body, media_type="application/json")

@@ -46,6 +46,16 @@ _STYLES = {
     *("border", "border-left", "border-right", "border-top", "border-bottom"),
 }
 _LINKS = {"http", "https", "mailto"}
+_CLEANER = nh3.Cleaner(
+    tags=_TEXT_TAGS | _MATH_TAGS,
+    clean_content_tags={"script", "style"},
+    attributes=_ATTRIBUTES,
+    allowed_classes={"div": {"math", "table"}, "span": {"math"}},
+    filter_style_properties=_STYLES,
+    url_schemes=_LINKS,
+    url_relative="deny",
+    link_rel="noopener noreferrer",
+)
 
 
 @lru_cache(maxsize=4096)
@@ -80,17 +90,17 @@ def render_math(latex: str, display: bool = False) -> str:
             field="latex",
             hint="Use the LaTeX of amsmath; \\href, \\url and packages are not available.",
         ) from error
-    return _clean(mathml)
+    return _CLEANER.clean(mathml)
 
 
 def render_text(markdown: str) -> str:
     """A text as HTML; a formula that cannot be typeset is shown as it was written."""
-    return _clean(_parser().render(markdown, {}))
+    return _CLEANER.clean(_parser().render(markdown, {}))
 
 
 def render_line(markdown: str) -> str:
     """A text that stands inside a line (a list item, a label), without its paragraph."""
-    return _clean(_parser().renderInline(markdown, {}))
+    return _CLEANER.clean(_parser().renderInline(markdown, {}))
 
 
 def plain(text: str) -> str:
@@ -177,20 +187,6 @@ def _link_is_allowed(url: str) -> bool:
         return urlsplit(url.strip()).scheme.lower() in _LINKS
     except ValueError:
         return False
-
-
-def _clean(html: str) -> str:
-    return nh3.clean(
-        html,
-        tags=_TEXT_TAGS | _MATH_TAGS,
-        clean_content_tags={"script", "style"},
-        attributes=_ATTRIBUTES,
-        allowed_classes={"div": {"math", "table"}, "span": {"math"}},
-        filter_style_properties=_STYLES,
-        url_schemes=_LINKS,
-        url_relative="deny",
-        link_rel="noopener noreferrer",
-    )
 
 
 def _all_tokens(tokens: Sequence[Token]) -> list[Token]:

@@ -56,9 +56,13 @@ class LoopContext:
 
     def loop_content(self) -> tuple[Any, ...]:
         """Everything that the loop is made of."""
+        return (self._parts,)
+
+    @cached_property
+    def _parts(self) -> bytes:
         loop = self.loop
-        others = (None if G is None else G.key for G in (loop.actuator, loop.sensor, loop.disturbance))
-        return (loop.plant.key, loop.C.key, loop.feedforward, *others)
+        others = (b"" if G is None else G.key for G in (loop.actuator, loop.sensor, loop.disturbance))
+        return b"\0".join([loop.plant.key, loop.C.key, repr(loop.feedforward).encode(), *others])
 
     def step_content(self) -> tuple[Any, ...]:
         """The loop and the time axis."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import lru_cache
 from itertools import groupby
 
 from looplab.engine.systems.polynomial import ComplexArray
@@ -54,9 +55,15 @@ def _product(roots: ComplexArray, digits: int, latex: bool) -> str:
     return " ".join(parts)
 
 
+@lru_cache(maxsize=256)
+def _products(unit: TransferFunction, digits: int, latex: bool) -> tuple[str, str]:
+    """Numerator and denominator without the gain: a moved gain leaves them as they are."""
+    return _product(unit.zeros, digits, latex), _product(unit.poles, digits, latex)
+
+
 def to_text(system: TransferFunction, digits: int = 6) -> str:
     """Factored text that the parser reads back."""
-    top, bottom = (_product(r, digits, latex=False) for r in (system.zeros, system.poles))
+    top, bottom = _products(system.unit, digits, False)
     gain = number(system.gain, digits)
     if top and gain == "1":
         head = top
@@ -74,7 +81,7 @@ def to_text(system: TransferFunction, digits: int = 6) -> str:
 
 def to_latex(system: TransferFunction, digits: int = 4) -> str:
     """Factored LaTeX."""
-    top, bottom = (_product(r, digits, latex=True) for r in (system.zeros, system.poles))
+    top, bottom = _products(system.unit, digits, True)
     gain = latex_number(system.gain, digits)
     implied = bool(top) and gain in {"1", "-1"}
     head = (gain.removesuffix("1") if implied else gain + (r"\," if top else "")) + top
