@@ -208,7 +208,9 @@ def routh(request: Annotated[RouthRequest, Body(openapi_examples=EXAMPLES)]) -> 
     else:
         reasons["pi_region"] = "not asked for: give tau_I"
     name = "Kc" if isinstance(loop.controller, PID) else "k"
-    gain = {"name": name, "value": loop.gain, "in_range": loop.gain in found}
+    # The ranges are open, and 0 is the end of one of them: there the loop itself tells.
+    inside = loop.gain in found or (loop.gain == 0.0 and answer["stable"])
+    gain = {"name": name, "value": loop.gain, "in_range": inside}
     return json_response(
         answer | {"gain": gain, "gain_ranges": _ranges(found), "pi_region": region, "reasons": reasons}
     )
