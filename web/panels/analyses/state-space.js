@@ -22,8 +22,14 @@ function requestOf({ plant, view }) {
   return { system: plant, cancel_tolerance: view.analyses.cancel_tolerance };
 }
 
-/** @param {HTMLElement} host @param {Store} store @param {Api} api @returns {() => void} */
-export function mount(host, store, api) {
+/**
+ * @param {HTMLElement} host
+ * @param {Store} store
+ * @param {Api} api
+ * @param {{plantGiven?: boolean}} [options]  on the bench of a lab the plant is not to be changed
+ * @returns {() => void}
+ */
+export function mount(host, store, api, { plantGiven = false } = {}) {
   const { answers } = store;
   const tolerance = h("number-field", { label: "Zeros cancel poles up to a distance of", min: 0, max: 0.1 });
   tolerance.addEventListener("value-change", (event) => store.setAnalyses({ cancel_tolerance: /** @type {CustomEvent<{value: number}>} */ (event).detail.value }));
@@ -71,7 +77,7 @@ export function mount(host, store, api) {
       id: "state_space",
       title: "State space",
       help: ANALYSIS_HELP["state_space"] ?? "",
-      form: [h("div", { class: "form-fields" }, edit, tolerance)],
+      form: [h("div", { class: "form-fields" }, plantGiven ? null : edit, tolerance)],
       words: [words],
       render,
       table: () => (analysis?.answer ? tableOf(analysis.answer) : null),

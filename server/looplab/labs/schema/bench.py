@@ -8,7 +8,11 @@ from looplab.labs.schema.base import Line, Model, Number
 from looplab.schemas import Controller, Loop, System
 
 Knob = Literal["Kc", "tau_I", "tau_D", "alpha"]
-Panel = Literal["step", "bode", "nyquist", "root_locus", "sensitivity", "numbers"]
+Panel = Literal[
+    "step", "bode", "nyquist", "nichols", "root_locus", "sensitivity", "numbers",
+    "response", "laplace", "routh", "stability", "state_space", "low_order",
+    "limits", "bode_integral", "spectrum",
+]  # fmt: skip
 
 
 class Slider(Model):
@@ -45,8 +49,9 @@ class Bench(Model):
     controller: Controller = Field(description="The settings the bench opens with.")
     time_unit: Literal["s", "min"] = "s"
     sliders: Annotated[list[Slider], Field(min_length=1, max_length=8)]
-    panels: Annotated[list[Panel], Field(min_length=1, max_length=6)] = Field(
-        description="What the bench can show, the most important first; the verdict is always there."
+    panels: Annotated[list[Panel], Field(min_length=1, max_length=8)] = Field(
+        description="What the bench can show, the most important first: plots of the loop, and analyses of the plant "
+        "and the loop with words and tables. The verdict is always there."
     )
     horizon: Annotated[float, Field(gt=0)] | None = Field(
         default=None, description="Length of the step response; found from the loop where left out."
