@@ -117,10 +117,12 @@ def test_PI_region_of_the_notes(routh: Any) -> None:
 
 
 def test_expansion_that_loses_the_digits_is_not_shown(routh: Any) -> None:
-    answer = routh(loop=loop("1/(s+1)^50", Kc=1.1))
-    assert answer["stable"]
-    assert answer["gain"]["in_range"]
-    assert answer["rhp_roots"] == 0
+    # The first crossing, at tan(pi/50), is for Kc = 1/cos(pi/50)^50 = 1.1038.
+    for Kc, right in ((1.1, 0), (1.11, 2)):
+        answer = routh(loop=loop("1/(s+1)^50", Kc=Kc))
+        assert answer["array"] is None
+        assert answer["stable"] is answer["gain"]["in_range"] is (right == 0)
+        assert [answer[f"{side}_roots"] for side in ("rhp", "imaginary_axis", "lhp")] == [right, 0, 50 - right]
 
 
 def test_the_hidden_mode_of_the_notes(stability: Any) -> None:
