@@ -326,12 +326,16 @@ def test_a_bench_shows_analyses_of_the_plant_as_it_is_given(page: Page):
     def with_analyses(route):
         lab = route.fetch().json()
         lab["bench"]["panels"] = ["low_order", "state_space", "nichols", "response"]
+        lab["bench"] |= {"sensor": "exp(-0.5 s)", "sensor_mathml": "<math><mi>H</mi></math>"}
         route.fulfill(json=lab)
 
     page.route("**/api/v1/labs/ziegler-nichols-third-order", with_analyses)
     page.set_viewport_size({"width": 1440, "height": 900})
     opened(page)
     expect(page.locator("#stage [data-plot]")).to_have_count(3)
+    # The dead time of the sensor is in the loop: (1 + w^2)^1.5 where 3 atan(w) + w/2 = pi, at w = 1.1508.
+    expect(page.locator(".chip-GM")).to_contain_text("3.54")
+    expect(page.locator(".bench-process")).to_contain_text("Sensor")
     models = page.locator("#panel-low_order")
     expect(models.get_by_role("row", name=re.compile("half rule"))).to_contain_text("1.5")
     expect(models.get_by_role("button", name=re.compile("as the plant"))).to_have_count(0)

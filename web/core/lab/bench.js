@@ -9,12 +9,12 @@ import { hasDerivative, hasIntegral } from "../workbench/loop.js";
 import { tidy } from "../scale.js";
 
 /** @param {LabBench} bench @returns {State} */
-export function stateOf({ plant, controller, horizon, sliders }) {
+export function stateOf({ plant, actuator, sensor, controller, horizon, sliders }) {
   const { form, Kc, tau_I, tau_D, alpha, action } = controller;
   return {
     plant,
-    actuator: "",
-    sensor: "",
+    actuator: actuator ?? "",
+    sensor: sensor ?? "",
     horizon,
     controller: {
       type: typeOf(tau_I !== null, Boolean(tau_D)),

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 
 from looplab.labs.schema.base import Line, Model, Number
-from looplab.schemas import Controller, Loop, System
+from looplab.schemas import Controller, ExpressionSystem, Loop, System
 
 Knob = Literal["Kc", "tau_I", "tau_D", "alpha"]
 Panel = Literal[
@@ -47,6 +47,10 @@ class Bench(Model):
 
     plant: System
     controller: Controller = Field(description="The settings the bench opens with.")
+    actuator: ExpressionSystem | None = Field(default=None, description="Between controller and plant; null is 1.")
+    sensor: ExpressionSystem | None = Field(
+        default=None, description="What the controller sees of the output; null is 1. Dead time may sit in either."
+    )
     time_unit: Literal["s", "min"] = "s"
     sliders: Annotated[list[Slider], Field(min_length=1, max_length=8)]
     panels: Annotated[list[Panel], Field(min_length=1, max_length=8)] = Field(
@@ -84,8 +88,11 @@ class Bench(Model):
         data: dict[str, Any] = self.controller.model_dump()
         return type(self.controller).model_validate({**data, **settings})
 
+    def loop_of(self, controller: Controller) -> Loop:
+        return Loop(plant=self.plant, controller=controller, actuator=self.actuator, sensor=self.sensor)
+
     def loop_with(self, settings: dict[str, float | None]) -> Loop:
-        return Loop(plant=self.plant, controller=self.controller_with(settings))
+        return self.loop_of(self.controller_with(settings))
 
 
 def check_setting(slider: Slider, value: float | None) -> None:
