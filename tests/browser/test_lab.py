@@ -327,6 +327,8 @@ def test_a_bench_shows_analyses_of_the_plant_as_it_is_given(page: Page):
         lab = route.fetch().json()
         lab["bench"]["panels"] = ["low_order", "state_space", "nichols", "response"]
         lab["bench"] |= {"sensor": "exp(-0.5 s)", "sensor_mathml": "<math><mi>H</mi></math>"}
+        staircase = {"type": "sampled", "times": [0, 2], "values": [1, 3], "hold": "zero"}
+        lab["bench"]["response"] = {"of": "plant", "input": staircase, "sum": "superposition"}
         route.fulfill(json=lab)
 
     page.route("**/api/v1/labs/ziegler-nichols-third-order", with_analyses)
@@ -342,7 +344,8 @@ def test_a_bench_shows_analyses_of_the_plant_as_it_is_given(page: Page):
     expect(page.locator("#panel-state_space")).to_contain_text("Rank 3 of 3")
     expect(page.get_by_role("button", name="Type matrices as the plant")).to_have_count(0)
     page.get_by_role("group", name="Analyses").get_by_role("button", name="Response").click()
-    expect(page.locator("#panel-response")).to_contain_text("y comes to rest at 1")
+    expect(page.locator("#panel-response")).to_contain_text("y comes to rest at 3")
+    expect(page.locator("#panel-response")).to_contain_text("2 terms add up to y")
     expect(page.get_by_role("button", name="Examples")).to_have_count(0)
     choice = page.get_by_role("combobox", name="Show")
     expect(choice).to_be_hidden()

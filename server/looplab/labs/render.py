@@ -70,6 +70,8 @@ def _bench(bench: Bench) -> dict[str, Any]:
         **_instrument("actuator", bench.actuator),
         **_instrument("sensor", bench.sensor),
         "horizon": bench.horizon,
+        "response": bench.response and bench.response.model_dump(),
+        "laplace": bench.laplace and bench.laplace.model_dump(),
         "panels": list(bench.panels),
         "sliders": [_slider(slider, bench) for slider in bench.sliders],
     }

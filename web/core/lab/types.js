@@ -28,6 +28,8 @@
  * @property {string | null} sensor_mathml
  * @property {{type: string, form: "ideal" | "series", Kc: number, tau_I: number | null, tau_D: number | null, alpha: number, action: "reverse" | "direct"}} controller
  * @property {number | null} horizon
+ * @property {Partial<import("../types.js").ResponseView> | null} response  how the analysis opens
+ * @property {import("../types.js").InputShape | null} laplace
  * @property {string[]} panels
  * @property {LabSlider[]} sliders
  */

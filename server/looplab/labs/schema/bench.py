@@ -5,7 +5,8 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 
 from looplab.labs.schema.base import Line, Model, Number
-from looplab.schemas import Controller, ExpressionSystem, Loop, System
+from looplab.schemas import Controller, ExpressionSystem, InputShape, Loop, System
+from looplab.schemas.laplace import TransformInput
 
 Knob = Literal["Kc", "tau_I", "tau_D", "alpha"]
 Panel = Literal[
@@ -42,6 +43,16 @@ class Slider(Model):
         return self
 
 
+class ResponseView(Model):
+    """How the analysis `response` opens."""
+
+    of: Literal["plant", "open_loop", "closed_loop"] = "plant"
+    input: InputShape
+    sum: Literal["superposition", "convolution"] | None = Field(
+        default=None, description="Show y as a sum: of steps, or of answers to slices of the input."
+    )
+
+
 class Bench(Model):
     """The loop of the lab. Every exercise that does not name a plant of its own is about this one."""
 
@@ -57,6 +68,8 @@ class Bench(Model):
         description="What the bench can show, the most important first: plots of the loop, and analyses of the plant "
         "and the loop with words and tables. The verdict is always there."
     )
+    response: ResponseView | None = Field(default=None, description="What `response` opens with.")
+    laplace: TransformInput | None = Field(default=None, description="The input that `laplace` opens with.")
     horizon: Annotated[float, Field(gt=0)] | None = Field(
         default=None, description="Length of the step response; found from the loop where left out."
     )
