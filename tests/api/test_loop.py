@@ -185,3 +185,20 @@ def test_a_direct_acting_controller_suits_a_negative_gain(loop_of: Ask) -> None:
     a, b = direct["metrics"]["setpoint"], reverse["metrics"]["setpoint"]
     assert a["overshoot_pct"] == pytest.approx(b["overshoot_pct"], rel=1e-9)
     assert a["IAE"] == pytest.approx(b["IAE"], rel=1e-9)
+
+
+@pytest.mark.parametrize(("plant", "Kc"), [("0/(s+1)", 2.0), ("1/(s+1)", 0.0)])
+def test_a_loop_that_is_cut(loop_of: Ask, plant: str, Kc: float) -> None:
+    """L = 0: S = 1, PS = P, CS = C, T = 0; what is zero has no decibels and no straight lines."""
+    panels = loop_of(plant, {"Kc": Kc}, want=["bode", "sensitivity", "asymptotes"])
+    bode, sensitivity = panels["bode"], panels["sensitivity"]
+    assert bode["L"] is None
+    assert sensitivity["T_dB"] is None
+    assert sensitivity["omega"] == bode["omega"]
+    assert np.abs(sensitivity["S_dB"]).max() == 0.0
+    for name, curve in (("PS_dB", bode["P"]), ("CS_dB", bode["C"])):
+        if curve is None:
+            assert sensitivity[name] is None
+        else:
+            assert sensitivity[name] == pytest.approx(curve["mag_dB"], abs=1e-12)
+    assert panels["asymptotes"]["omega"] == panels["asymptotes"]["corners"] == []

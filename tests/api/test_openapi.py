@@ -20,6 +20,13 @@ def examples(operation: dict[str, Any]) -> dict[str, Any]:
     return {name: example["value"] for name, example in body.get("examples", {}).items()}
 
 
+def test_the_description_is_found_at_the_root_too(client: TestClient) -> None:
+    found = client.get("/openapi.json")
+    assert found.status_code == 200
+    assert found.url.path == "/api/v1/openapi.json"
+    assert found.json() == DESCRIPTION
+
+
 @pytest.mark.parametrize(("path", "method"), OPERATIONS)
 def test_every_route_says_what_it_is_for(path: str, method: str) -> None:
     operation = DESCRIPTION["paths"][path][method]

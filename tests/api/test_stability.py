@@ -70,6 +70,8 @@ def test_three_lags(routh: Any, Kc: float, counts: tuple[int, int, int]) -> None
     assert (r["low"], r["high"]) == pytest.approx((0, 8), rel=1e-12)
     assert r["high_omega"] == pytest.approx([3**0.5], rel=1e-12)
     assert answer["gain"] == {"name": "Kc", "value": Kc, "in_range": Kc < 8}
+    assert routh(loop=loop("1/(s+1)^3", Kc=0))["gain"]["in_range"]
+    assert not routh(loop=loop("1/s", Kc=0))["gain"]["in_range"]
     (r,) = routh(loop=loop("1/(s+1)^3", Kc=Kc), negative=True)["gain_ranges"]
     assert r["low"] == pytest.approx(-1)
 
@@ -115,10 +117,12 @@ def test_PI_region_of_the_notes(routh: Any) -> None:
 
 
 def test_expansion_that_loses_the_digits_is_not_shown(routh: Any) -> None:
-    answer = routh(loop=loop("1/(s+1)^50", Kc=1.1))
-    assert answer["stable"]
-    assert answer["gain"]["in_range"]
-    assert answer["rhp_roots"] == 0
+    # The first crossing, at tan(pi/50), is for Kc = 1/cos(pi/50)^50 = 1.1038.
+    for Kc, right in ((1.1, 0), (1.11, 2)):
+        answer = routh(loop=loop("1/(s+1)^50", Kc=Kc))
+        assert answer["array"] is None
+        assert answer["stable"] is answer["gain"]["in_range"] is (right == 0)
+        assert [answer[f"{side}_roots"] for side in ("rhp", "imaginary_axis", "lhp")] == [right, 0, 50 - right]
 
 
 def test_the_hidden_mode_of_the_notes(stability: Any) -> None:
@@ -148,12 +152,16 @@ def test_the_hidden_mode_of_the_notes(stability: Any) -> None:
         ("exp(-s)/s", {"Kc": 2}, "unstable", False),
         ("s exp(-s)/(s+1)^2", {"type": "expr", "text": "0.1/s"}, "marginal", False),
         ("1/(s-1)", {"Kc": 0}, "unstable", False),
+        ("1/s^2", {"Kc": 1}, "marginal", False),
+        ("1/s^2", {"Kc": 0}, "unstable", False),
+        ("exp(-s)/s", {"Kc": np.pi / 2}, "marginal", False),
     ],
 )
 def test_loops(stability: Any, plant: str, C: dict[str, Any], verdict: str, stable: bool) -> None:
     answer = stability(loop=loop(plant, **C))
     assert answer["verdict"] == verdict
     assert answer["asymptotically_stable"] == stable == answer["internal"]["internally_stable"]
+    assert answer["lyapunov_stable"] == (verdict != "unstable")
     assert answer["because"]
 
 

@@ -42,6 +42,8 @@ def test_gramians_of_a_lag_and_none_of_an_integrator(page: Page):
 
 def test_matrices_are_typed_as_the_plant(page: Page):
     open_analyses(page, "state_space")
+    modes = page.locator("#panel-state_space").get_by_role("table", name=re.compile("^Each mode"))
+    expect(modes.get_by_role("rowheader")).to_have_text(["−1 (3×)"])
     page.get_by_role("button", name="Type matrices as the plant").click()
     card = page.locator("#card-plant")
     expect(card.get_by_role("button", name=re.compile("^Plant"))).to_be_focused()

@@ -206,3 +206,20 @@ def test_the_gang_of_six_shows_the_setpoint_weight(page: Page):
     expect(note).to_contain_text("CFS is CS, and TF is T")
     expect(page).not_to_have_url(re.compile("beta="))
     assert violations(page) == []
+
+
+def test_a_loop_that_is_cut_is_drawn_with_what_is_left(page: Page):
+    open_workbench(page, "plant=0/(s%2B1)&type=PI&Kc=1&tau_I=2&show=bode,nichols,root_locus,sensitivity")
+    for panel in ("bode", "nichols"):
+        expect(page.locator(f"#panel-{panel} .panel-note")).to_contain_text("L = 0: the loop is cut")
+    expect(page.locator("#panel-root_locus .panel-note")).to_contain_text("no poles that could move")
+    traces = "document.querySelector('#panel-sensitivity .plot').data"
+    drawn = page.evaluate(f"Object.fromEntries({traces}.map((t) => [t.name, Array.from(t.y)]))")
+    assert set(drawn["S"]) == {0}
+    assert drawn["T"] == drawn["PS"] == []
+    # CS is C = 1 + 1/(2 s), which falls to 0 dB.
+    assert drawn["CS"][0] > drawn["CS"][-1] > 0
+    page.get_by_role("button", name="asymptotes").click()
+    settled(page)
+    page.locator("#panel-bode").get_by_role("button", name="Numbers of Bode as a table").click()
+    expect(page.locator("#panel-bode table")).to_contain_text("|C| [dB]")

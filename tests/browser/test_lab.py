@@ -320,3 +320,40 @@ def test_nothing_sticks_out_at_the_side(page: Page, path: str, width: int) -> No
     page.goto(path)
     expect(page.locator(".lab-card, .exercise").first).to_be_attached()
     assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def test_a_bench_shows_analyses_of_the_plant_as_it_is_given(page: Page):
+    def with_analyses(route):
+        lab = route.fetch().json()
+        lab["bench"]["panels"] = ["low_order", "state_space", "nichols", "response"]
+        lab["bench"] |= {"sensor": "exp(-0.5 s)", "sensor_mathml": "<math><mi>H</mi></math>"}
+        staircase = {"type": "sampled", "times": [0, 2], "values": [1, 3], "hold": "zero"}
+        lab["bench"]["response"] = {"of": "plant", "input": staircase, "sum": "superposition"}
+        route.fulfill(json=lab)
+
+    page.route("**/api/v1/labs/ziegler-nichols-third-order", with_analyses)
+    page.set_viewport_size({"width": 1440, "height": 900})
+    opened(page)
+    expect(page.locator("#stage [data-plot]")).to_have_count(3)
+    # The dead time of the sensor is in the loop: (1 + w^2)^1.5 where 3 atan(w) + w/2 = pi, at w = 1.1508.
+    expect(page.locator(".chip-GM")).to_contain_text("3.54")
+    expect(page.locator(".bench-process")).to_contain_text("Sensor")
+    models = page.locator("#panel-low_order")
+    expect(models.get_by_role("row", name=re.compile("half rule"))).to_contain_text("1.5")
+    expect(models.get_by_role("button", name=re.compile("as the plant"))).to_have_count(0)
+    expect(page.locator("#panel-state_space")).to_contain_text("Rank 3 of 3")
+    expect(page.get_by_role("button", name="Type matrices as the plant")).to_have_count(0)
+    page.get_by_role("group", name="Analyses").get_by_role("button", name="Response").click()
+    expect(page.locator("#panel-response")).to_contain_text("y comes to rest at 3")
+    expect(page.locator("#panel-response")).to_contain_text("2 terms add up to y")
+    expect(page.get_by_role("button", name="Examples")).to_have_count(0)
+    choice = page.get_by_role("combobox", name="Show")
+    expect(choice).to_be_hidden()
+    assert barriers(page) == []
+
+    page.set_viewport_size({"width": 360, "height": 740})
+    page.get_by_role("tab", name="Bench").click()
+    choice.select_option("Nichols")
+    expect(page.locator("#stage [data-plot]")).to_have_count(1)
+    expect(page.locator("#panel-nichols")).to_be_visible()
+    assert page.evaluate("document.documentElement.scrollWidth") == 360

@@ -51,6 +51,8 @@ def test_a_text_may_be_its_lines(data: dict[str, Any]) -> None:
         (("bench", "controller", "Kc"), 50, "bench", "Kc = 50 is outside 0.1 to 20"),
         (("bench", "controller", "form"), "perfect", "bench.controller.form", "ideal"),
         (("bench", "panels", 0), "music", "bench.panels[0]", "step"),
+        (("bench", "response"), {"input": {"type": "noise"}}, "bench.response.input", "step"),
+        (("bench", "laplace"), {"type": "pulse", "width": 1}, "bench.laplace", "step"),
         (("parts", 0, "settings"), {"alpha": 1}, "", "has no slider"),
         (("parts", 0, "settings"), {"tau_I": -1}, "", "outside"),
         (("parts", 0, "blocks", 0, "type"), "video", "parts[0].blocks[0]", "text"),

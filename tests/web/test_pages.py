@@ -1,11 +1,14 @@
 """The HTML pages keep to their policy and say what a reader, or a screen reader, needs."""
 
+import re
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import get_args
 from urllib.error import HTTPError
 
 import pytest
 
+from looplab.labs.schema.bench import Panel
 from serving import read
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -90,3 +93,9 @@ def test_links_of_a_page_are_answered(html, server_url):
             error.close()
             broken.append(f"{target}: {error.code}")
     assert broken == []
+
+
+def test_a_lab_shows_every_panel_that_its_schema_knows():
+    page = (REPOSITORY / "web/pages/lab.js").read_text(encoding="utf-8")
+    (mounts,) = re.findall(r"^const MOUNTS = \{\n(.*?)^\};", page, re.MULTILINE | re.DOTALL)
+    assert re.findall(r"^  (\w+):", mounts, re.MULTILINE) == list(get_args(Panel))

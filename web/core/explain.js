@@ -8,6 +8,9 @@
  * @property {number} [decimals]  fixed decimals; otherwise three significant digits
  */
 
+/** Where L is zero there is no curve. */
+export const CUT_LOOP = "L = 0: the loop is cut, and zero has neither decibels nor phase. Give plant and controller a gain.";
+
 /** @type {Record<string, Meaning>} */
 export const MEANING = {
   verdict: { name: "Stability", text: "The closed loop is stable when all its poles lie left of the imaginary axis. Margins alone do not prove it." },

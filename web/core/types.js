@@ -117,7 +117,7 @@
 
 /** @typedef {{key: string, horizon: number, t: Numbers, setpoint: StepSignal, load: StepSignal}} StepPanel */
 /** @typedef {{mag_dB: Numbers, phase_deg: Numbers}} Response */
-/** @typedef {{key: string, omega: Numbers, L: Response, P: Response, C: Response}} BodePanel */
+/** A system that is zero has no curve. @typedef {{key: string, omega: Numbers, L: Response | null, P: Response | null, C: Response | null}} BodePanel */
 
 /**
  * A corner of the straight-line Bode diagram; slopes in units of 20 dB/decade.
@@ -252,7 +252,7 @@
  * @property {number} rhp_poles
  */
 
-/** @typedef {{key: string, omega: Numbers, S_dB: Numbers, PS_dB: Numbers, CS_dB: Numbers, T_dB: Numbers, CFS_dB: Numbers, TF_dB: Numbers, feedforward: number}} SensitivityPanel */
+/** What is zero has no curve. @typedef {{key: string, omega: Numbers, S_dB: Numbers | null, PS_dB: Numbers | null, CS_dB: Numbers | null, T_dB: Numbers | null, CFS_dB: Numbers | null, TF_dB: Numbers | null, feedforward: number}} SensitivityPanel */
 /** @typedef {{key: string, t: Numbers, S: Numbers, PS: Numbers, CS: Numbers, T: Numbers, CFS: Numbers, TF: Numbers, truncated_reason: string | null, feedforward: number}} GangStepsPanel */
 
 /**

@@ -5,7 +5,7 @@
 import { createApi } from "../core/api.js";
 import { inWords, settingsOf, stateOf, withSettings } from "../core/lab/bench.js";
 import { createProgress, localStore } from "../core/lab/progress.js";
-import { PLOTS } from "../core/workbench/plots.js";
+import { ANALYSES, PLOTS } from "../core/workbench/plots.js";
 import { startSession } from "../core/workbench/session.js";
 import { createStore } from "../core/store.js";
 import { h } from "../components/dom.js";
@@ -15,18 +15,50 @@ import { toast } from "../components/status-toast.js";
 import { createTabs } from "../components/tabs.js";
 import * as actionsBar from "../panels/workbench/actions-bar.js";
 import * as bode from "../panels/workbench/bode.js";
+import * as bodeIntegral from "../panels/analyses/bode-integral.js";
 import * as knobs from "../panels/lab/knobs.js";
+import * as laplace from "../panels/analyses/laplace.js";
+import * as limits from "../panels/analyses/limits.js";
+import * as lowOrder from "../panels/analyses/low-order.js";
+import * as nichols from "../panels/workbench/nichols.js";
 import * as reading from "../panels/lab/reading.js";
 import * as numbers from "../panels/workbench/numbers.js";
 import * as nyquist from "../panels/workbench/nyquist.js";
+import * as response from "../panels/analyses/response.js";
 import * as rootLocus from "../panels/workbench/root-locus.js";
+import * as routh from "../panels/analyses/routh.js";
 import * as sensitivity from "../panels/workbench/sensitivity.js";
+import * as spectrum from "../panels/analyses/spectrum.js";
+import * as stability from "../panels/analyses/stability.js";
+import * as stateSpace from "../panels/analyses/state-space.js";
 import * as step from "../panels/workbench/step.js";
 import * as verdictBar from "../panels/workbench/verdict-bar.js";
 import * as viewBar from "../panels/workbench/view-bar.js";
 
-/** @type {Record<string, import("../components/stage.js").Mount>} */
-const MOUNTS = { step: step.mount, bode: bode.mount, nyquist: nyquist.mount, root_locus: rootLocus.mount, sensitivity: sensitivity.mount, numbers: numbers.mount };
+/** @typedef {import("../components/stage.js").Mount} Mount */
+
+/** An analysis that could change the plant, without the means to. @param {typeof response.mount} mount @returns {Mount} */
+const asGiven = (mount) => (host, store, api) => mount(host, store, api, { plantGiven: true });
+
+/** @type {Record<string, Mount>} */
+const MOUNTS = {
+  step: step.mount,
+  bode: bode.mount,
+  nyquist: nyquist.mount,
+  nichols: nichols.mount,
+  root_locus: rootLocus.mount,
+  sensitivity: sensitivity.mount,
+  numbers: numbers.mount,
+  response: asGiven(response.mount),
+  laplace: laplace.mount,
+  routh: routh.mount,
+  stability: stability.mount,
+  state_space: asGiven(stateSpace.mount),
+  low_order: asGiven(lowOrder.mount),
+  limits: limits.mount,
+  bode_integral: bodeIntegral.mount,
+  spectrum: spectrum.mount,
+};
 const SHOWN_WIDE = 3;
 const NARROW = matchMedia("(max-width: 63.99rem)");
 
@@ -83,11 +115,13 @@ function open(lab) {
   const { bench } = lab;
   const progress = createProgress(lab.id, localStore());
   const initial = stateOf(bench);
-  const plots = PLOTS.filter(({ id }) => bench.panels.includes(id)).toSorted((a, b) => bench.panels.indexOf(a.id) - bench.panels.indexOf(b.id));
+  /** @param {import("../core/workbench/plots.js").ViewItem[]} items */
+  const offered = (items) => items.filter(({ id }) => bench.panels.includes(id)).toSorted((a, b) => bench.panels.indexOf(a.id) - bench.panels.indexOf(b.id));
+  const shown = () => bench.panels.slice(0, NARROW.matches ? 1 : SHOWN_WIDE);
   const store = createStore({
     ...initial,
     controller: { ...initial.controller, ...withSettings(initial.controller, usable(progress.saved.settings, lab)) },
-    view: { ...initial.view, show: plots.slice(0, NARROW.matches ? 1 : SHOWN_WIDE).map(({ id }) => id) },
+    view: { ...initial.view, show: shown() },
   });
 
   const tabs = createTabs(place("tabs"), "Lesson and bench", [
@@ -97,7 +131,7 @@ function open(lab) {
   const asTabs = () => tabs.use(NARROW.matches);
   NARROW.addEventListener("change", () => {
     asTabs();
-    store.setView({ show: plots.slice(0, NARROW.matches ? 1 : SHOWN_WIDE).map(({ id }) => id) });
+    store.setView({ show: shown() });
   });
   asTabs();
 
@@ -123,9 +157,9 @@ function open(lab) {
   openReading();
   verdictBar.mount(place("verdict"), store, api);
   knobs.mount(place("knobs"), store, api, bench);
-  viewBar.mount(place("views"), store, api, { narrow: () => NARROW.matches, plots });
+  viewBar.mount(place("views"), store, api, { narrow: () => NARROW.matches, plots: offered(PLOTS), analyses: offered(ANALYSES) });
   actionsBar.mount(place("actions"), store, api, { link: false });
-  createStage(place("stage"), store, api, plots.map(({ id }) => ({ id, mount: /** @type {import("../components/stage.js").Mount} */ (MOUNTS[id]) })));
+  createStage(place("stage"), store, api, bench.panels.map((id) => ({ id, mount: /** @type {Mount} */ (MOUNTS[id]) })));
 
   store.subscribe(({ controller }, change) => {
     if (change.design && !change.moving) progress.keepSettings(settingsOf(controller, bench.sliders));

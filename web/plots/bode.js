@@ -6,7 +6,7 @@
 import { axis, baseLayout, extent, holdRange } from "./axes.js";
 import { sketchTraces } from "./bode_sketch.js";
 import { escapePlotly } from "./escape.js";
-import { ghostLine, lineOf } from "./signals.js";
+import { ghostLine, lineOf, NO_CURVE } from "./signals.js";
 
 /** Magnitudes and phases beyond these say nothing about the loop and would squeeze what does. */
 const LIMITS = { mag_dB: [-80, 80], phase_deg: [-450, 270] };
@@ -39,7 +39,7 @@ export function bodePlot({ bode, margins, curves, sketch, ghosts, timeUnit }, th
     mode: "lines",
     name: curve,
     x: omega,
-    y: bode[curve][part],
+    y: (bode[curve] ?? NO_CURVE)[part],
     yaxis: part === "mag_dB" ? "y" : "y2",
     line: lineOf(curve, theme),
     hovertemplate: `${curve}: ${part === "mag_dB" ? "%{y:.2f} dB" : "%{y:.1f}°"} at %{x:.4~g} rad/${unit}<extra></extra>`,
@@ -54,7 +54,7 @@ export function bodePlot({ bode, margins, curves, sketch, ghosts, timeUnit }, th
     ...marginTraces(bode, margins, theme, unit),
   ];
 
-  const shown = curves.map((curve) => bode[curve]);
+  const shown = curves.map((curve) => bode[curve] ?? NO_CURVE);
   const mag = clip(extent(...shown.map((r) => r.mag_dB)), LIMITS.mag_dB);
   const phase = clip(extent(...shown.map((r) => r.phase_deg), sketch?.phase_deg ?? [], [-180]), LIMITS.phase_deg);
   const [first, last] = [Math.log10(omega[0] ?? 0.01), Math.log10(omega[omega.length - 1] ?? 100)];
@@ -89,7 +89,7 @@ function ghostTraces(ghost, theme) {
     mode: "lines",
     name: "kept L",
     x: ghost.omega,
-    y: ghost.L[part],
+    y: (ghost.L ?? NO_CURVE)[part],
     yaxis: part === "mag_dB" ? "y" : "y2",
     line: ghostLine(theme),
     hoverinfo: "skip",
@@ -149,11 +149,12 @@ function marginTraces(bode, margins, theme, unit) {
 
 /** The curve's phase at ω, on the turn where it is drawn. @param {BodePanel} bode @param {number} omega */
 function curvePhase(bode, omega) {
-  const { omega: grid, L } = bode;
+  const { omega: grid } = bode;
+  const { phase_deg } = bode.L ?? NO_CURVE;
   let i = 1;
   while (i < grid.length - 1 && /** @type {number} */ (grid[i]) < omega) i++;
   const [w0, w1] = [grid[i - 1] ?? 1, grid[i] ?? 1];
-  const [p0, p1] = [L.phase_deg[i - 1] ?? 0, L.phase_deg[i] ?? 0];
+  const [p0, p1] = [phase_deg[i - 1] ?? 0, phase_deg[i] ?? 0];
   const share = w1 === w0 ? 0 : Math.log(omega / w0) / Math.log(w1 / w0);
   return p0 + Math.min(1, Math.max(0, share)) * (p1 - p0);
 }

@@ -6,7 +6,7 @@
 import { axis, baseLayout, extent, holdRange } from "./axes.js";
 import { escapePlotly } from "./escape.js";
 import { M_LEVELS_DB, mContour, N_LEVELS_DEG, nContour, onEveryTurn, openLoop, turnsOf } from "./nichols_grid.js";
-import { ghostLine, lineOf } from "./signals.js";
+import { ghostLine, lineOf, NO_CURVE } from "./signals.js";
 
 /** What lies farther out says nothing about the loop and would squeeze what does. */
 const LIMITS = { mag_dB: /** @type {Range} */ ([-40, 40]), phase_deg: /** @type {Range} */ ([-720, 180]) };
@@ -32,7 +32,8 @@ const N_CONTOURS = N_LEVELS_DEG.map(nContour);
  * @returns {Figure}
  */
 export function nicholsPlot({ bode, margins, ghosts, timeUnit }, theme, held) {
-  const { omega, L } = bode;
+  const { omega } = bode;
+  const L = bode.L ?? NO_CURVE;
   const unit = escapePlotly(timeUnit);
   const seen = Array.from(L.phase_deg).filter((_, i) => inside(L.mag_dB[i], [FAINT_DB, LIMITS.mag_dB[1]]));
   const phases = clip(extent(seen, [-225, -89]), LIMITS.phase_deg);
@@ -44,7 +45,7 @@ export function nicholsPlot({ bode, margins, ghosts, timeUnit }, theme, held) {
     contours("N contours", onEveryTurn(N_CONTOURS, ranges.xaxis), theme),
     contours("M contours", onEveryTurn(M_CONTOURS, ranges.xaxis), theme),
     peakContour(margins, ranges.xaxis, theme),
-    ...ghosts.map((ghost) => /** @type {Trace} */ ({ type: "scatter", mode: "lines", name: "kept L", x: ghost.L.phase_deg, y: ghost.L.mag_dB, line: ghostLine(theme), hoverinfo: "skip" })),
+    ...ghosts.map((ghost) => /** @type {Trace} */ ({ type: "scatter", mode: "lines", name: "kept L", x: ghost.L?.phase_deg ?? [], y: ghost.L?.mag_dB ?? [], line: ghostLine(theme), hoverinfo: "skip" })),
     {
       type: "scatter",
       mode: "lines",
@@ -103,20 +104,21 @@ function peakContour(margins, phases, theme) {
 
 /** A dot at every power of ten of ω. @param {BodePanel} bode @param {Theme} theme @param {string} unit @returns {Trace} */
 function decades({ omega, L }, theme, unit) {
+  const { mag_dB, phase_deg } = L ?? NO_CURVE;
   /** @type {number[]} */
   const at = [];
   /** @type {number[]} */
   const x = [];
   /** @type {number[]} */
   const y = [];
-  for (let i = 1; i < omega.length; i++) {
+  for (let i = 1; i < phase_deg.length; i++) {
     const [w0, w1] = [omega[i - 1] ?? 0, omega[i] ?? 0];
     const decade = 10 ** Math.floor(Math.log10(w1) + 1e-9);
     if (!(w0 < decade * (1 - 1e-9) && decade <= w1 * (1 + 1e-9))) continue;
     const share = Math.log(decade / w0) / Math.log(w1 / w0);
     at.push(decade);
-    x.push((L.phase_deg[i - 1] ?? 0) + share * ((L.phase_deg[i] ?? 0) - (L.phase_deg[i - 1] ?? 0)));
-    y.push((L.mag_dB[i - 1] ?? 0) + share * ((L.mag_dB[i] ?? 0) - (L.mag_dB[i - 1] ?? 0)));
+    x.push((phase_deg[i - 1] ?? 0) + share * ((phase_deg[i] ?? 0) - (phase_deg[i - 1] ?? 0)));
+    y.push((mag_dB[i - 1] ?? 0) + share * ((mag_dB[i] ?? 0) - (mag_dB[i - 1] ?? 0)));
   }
   return { type: "scatter", mode: "markers", name: "decades of ω", x, y, customdata: at, marker: { symbol: "circle", size: 6, color: lineOf("L", theme).color }, hovertemplate: `ω = %{customdata:~g} rad/${unit}<extra></extra>` };
 }
@@ -135,7 +137,7 @@ function marginTraces({ omega, L }, margins, theme, unit) {
   const turn = (w) => {
     let i = 0;
     while (i < omega.length - 1 && /** @type {number} */ (omega[i]) < w) i++;
-    return L.phase_deg[i] ?? -180;
+    return L?.phase_deg[i] ?? -180;
   };
   /** @param {number} angle @param {number} w */
   const near = (angle, w) => angle + 360 * Math.round((turn(w) - angle) / 360);

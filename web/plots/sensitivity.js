@@ -27,12 +27,12 @@ export function sensitivityPlot({ sensitivity, curves, timeUnit }, theme, held) 
         mode: "lines",
         name,
         x: omega,
-        y: sensitivity[`${name}_dB`],
+        y: sensitivity[`${name}_dB`] ?? [],
         line: lineOf(name, theme),
         hovertemplate: `|${name}| = %{y:.2f} dB at %{x:.4~g} rad/${unit}<extra></extra>`,
       }),
   );
-  const [low, high] = extent(...curves.map((name) => sensitivity[`${name}_dB`]), [0]);
+  const [low, high] = extent(...curves.map((name) => sensitivity[`${name}_dB`] ?? []), [0]);
   const ranges = {
     xaxis:
       held.moving && held.ranges["xaxis"]

@@ -3,7 +3,7 @@
  * colour-blind eyes in light and dark; the dash tells them apart without colour.
  */
 
-/** @import {Theme} from "../core/types.js" */
+/** @import {Response, Theme} from "../core/types.js" */
 
 /**
  * @typedef {object} Signal
@@ -77,6 +77,9 @@ export function lineOf(signal, theme) {
   const { dash, width } = /** @type {Signal} */ (SIGNALS[signal]);
   return { color: theme.signal[signal] ?? theme.ink, dash, width };
 }
+
+/** Drawn of a system that is zero, which has no magnitude in dB and no phase. @type {Response} */
+export const NO_CURVE = { mag_dB: [], phase_deg: [] };
 
 /** The line of a kept response: the same dash, thinner and grey, so that the live one stands out. @param {Theme} theme */
 export function ghostLine(theme) {

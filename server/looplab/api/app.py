@@ -6,6 +6,8 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
 from fastapi import APIRouter, FastAPI
+from starlette.requests import Request
+from starlette.responses import RedirectResponse
 
 from looplab import __version__
 from looplab.api import errors, pages
@@ -15,10 +17,16 @@ from looplab.api.security import SecurityHeaders
 from looplab.api.settings import Settings
 from looplab.jobs import WorkerPool
 
+DESCRIBED_AT = "/api/v1/openapi.json"
 DESCRIPTION = """Feedback loops with exact dead time: simulate, analyse, tune, grade.
 
 Names are the symbols of the field (Kc, tau_I, GM_dB, PM_deg, Ms ...); frequency is rad per time unit; a complex number
 is [re, im]. What is infinite or undefined is null, with the reason beside it. Every error has one shape."""
+
+
+async def _description(_: Request) -> RedirectResponse:
+    """Tools look for the description at the root first."""
+    return RedirectResponse(DESCRIBED_AT)
 
 
 def create_app(settings: Settings | None = None) -> FastAPI:
@@ -46,7 +54,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         title="looplab",
         version=__version__,
         description=DESCRIPTION,
-        openapi_url="/api/v1/openapi.json",
+        openapi_url=DESCRIBED_AT,
         # The interactive pages would load scripts from another host.
         docs_url=None,
         redoc_url=None,
@@ -57,6 +65,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         v1.include_router(router)
     app.include_router(v1)
     errors.install(app)
+    app.add_route("/openapi.json", _description, include_in_schema=False)
     if settings.pages:
         pages.install(app)
     app.add_middleware(BodyLimit, limit=settings.max_body)

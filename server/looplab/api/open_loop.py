@@ -82,8 +82,8 @@ def bode_words(criterion: BodeCriterion) -> str:
     c = criterion
     says = {True: "stable", False: "unstable", None: "on the limit of stability"}
     if c.magnitude is not None and c.omega_180 is not None:
-        size = "<" if c.stable else "=" if c.stable is None else ">"
-        where = f"|L| = {c.magnitude:.4g} {size} 1 at omega_180 = {c.omega_180:.4g}"
+        size = "1" if c.stable is None else f"{c.magnitude:.4g} {'<' if c.stable else '>'} 1"
+        where = f"|L| = {size} at omega_180 = {c.omega_180:.4g}"
     elif c.stable:
         where = "the phase never crosses -180 deg"
     else:
@@ -100,7 +100,10 @@ def bode_words(criterion: BodeCriterion) -> str:
 
 
 def asymptotes_answer(L: TransferFunction, low: float, high: float) -> dict[str, Any]:
-    """The straight lines of L, and what each corner is."""
+    """The straight lines of L, and what each corner is; none where L is zero."""
+    if L.gain == 0.0:
+        lines = ("omega", "mag_dB", "phase_omega", "phase_deg", "corners")
+        return {name: [] for name in lines} | {"initial_slope": 0, "initial_phase_deg": 0.0}
     sketch = bode_sketch(L, low, high)
     return {
         "omega": sketch.omega.tolist(),

@@ -17,6 +17,7 @@ from looplab.labs.schema import (
     TransferFunctionExercise,
 )
 from looplab.labs.text import render_line, render_math, render_text
+from looplab.schemas import ExpressionSystem
 
 # Units a person needs beside a knob; a gain's own (input over output) depends on signals the bench does not name.
 _UNITS = {"time": "{time}", "rad/time": "rad/{time}", "%": "%", "dB": "dB", "deg": "°"}
@@ -66,10 +67,19 @@ def _bench(bench: Bench) -> dict[str, Any]:
         "plant_text": plant.to_text(),
         "plant_latex": latex,
         "plant_mathml": render_math(latex),
+        **_instrument("actuator", bench.actuator),
+        **_instrument("sensor", bench.sensor),
         "horizon": bench.horizon,
+        "response": bench.response and bench.response.model_dump(),
+        "laplace": bench.laplace and bench.laplace.model_dump(),
         "panels": list(bench.panels),
         "sliders": [_slider(slider, bench) for slider in bench.sliders],
     }
+
+
+def _instrument(name: str, system: ExpressionSystem | None) -> dict[str, Any]:
+    found = {name: None, f"{name}_mathml": None}
+    return found if system is None else {name: system.text, f"{name}_mathml": render_math(system.to_latex())}
 
 
 def _slider(slider: Slider, bench: Bench) -> dict[str, Any]:

@@ -1,5 +1,8 @@
 """y(t): expressions to the letter, mpmath's numerical inversion, and the simulation."""
 
+import math
+import re
+
 import mpmath
 import numpy as np
 import pytest
@@ -53,6 +56,22 @@ def time_function(text: str, signal: LaplaceInput | None = STEP):
 )
 def test_expressions(text: str, signal: LaplaceInput | None, expected: str) -> None:
     assert time_function(text, signal).to_text() == expected
+
+
+def test_no_power_that_matters_is_left_out() -> None:
+    """20 lags: 1 - e^(-t) sum t^k/k!, and at t = 20 the largest of them is t^19/19!, whose factor is 8e-18."""
+    text = time_function("1/(s+1)^20", STEP).to_text()
+    powers = [1.0] + [float(c) for c in re.findall(r"([0-9.e-]+) t\^", text)]
+    assert powers == pytest.approx([1.0] + [1 / math.factorial(k) for k in range(2, 20)], rel=1e-5)
+    slow = time_function("1/(1e4s+1)^6", STEP).to_text()
+    assert slow.endswith(f" + {1e-20 / math.factorial(5):.6g} t^5)")
+
+
+def test_a_slow_repeated_pair_keeps_every_fraction() -> None:
+    """1/(s q^3) = (1/s - s/q)/w^6 - s/(w^4 q^2) - s/(w^2 q^3) with q = s^2 + w^2, here w^2 = 1e-8."""
+    found = partial_fractions(parse_transfer_function("1/(s^2+1e-8)^3"), STEP)
+    expected = "1e+24/s - 1e+24 s/(s^2 + 1e-08) - 1e+16 s/(s^2 + 1e-08)^2 - 1e+08 s/(s^2 + 1e-08)^3"
+    assert fractions_sum(found, TEXT, 6) == expected
 
 
 def test_latex() -> None:

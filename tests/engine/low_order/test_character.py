@@ -25,6 +25,7 @@ def test_first_order(K: float, tau: float, theta: float) -> None:
     assert found.tau == pytest.approx(tau, rel=1e-14)
     assert found.K == pytest.approx(K, rel=1e-14)
     assert found.initial_slope == pytest.approx(K / tau, rel=1e-14)
+    assert "one time constant" in found.reasons["tau_2"]
     assert found.t_63 == pytest.approx(theta + tau, rel=1e-14)
     assert found.t_63 is not None
     assert float(y(found.t_63)) == pytest.approx((1 - math.exp(-1)) * K, rel=1e-11)

@@ -255,6 +255,10 @@ def test_horizons() -> None:
     assert response_horizon(np.array([-1 + 0j]), step()) == 8
     assert response_horizon(np.array([-1 + 0j]), step(start=2), 3.0) == 13
     assert response_horizon(np.zeros(0, dtype=complex), step()) == 10
+    for count in (3, 20, 50):
+        # The step of so many lags, 1 - sum e^(-t) t^k/k!, is within 0.2 % of its end by then.
+        end = response_horizon(-np.ones(count, dtype=complex), step())
+        assert 0.998 < scipy.special.gammainc(count, end) < 0.9999999
     assert response_horizon(np.array([2j, -2j]), sine(omega=2.0)) == pytest.approx(26)
     assert 0 < response_horizon(np.array([5 + 0j, -1e-12 + 0j]), step()) <= 1e9
 

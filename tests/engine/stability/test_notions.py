@@ -7,7 +7,14 @@ from hypothesis import strategies as st
 from scipy.linalg import block_diag, expm
 
 from looplab.engine.errors import InvalidInput
-from looplab.engine.stability import bibo, matrix_stability, state_space_bibo, system_stability
+from looplab.engine.loop import FeedbackLoop
+from looplab.engine.stability import (
+    axis_poles_are_simple,
+    bibo,
+    matrix_stability,
+    state_space_bibo,
+    system_stability,
+)
 from looplab.engine.systems import TransferFunction, parse_transfer_function, realize
 from strategies import effort, systems
 
@@ -139,6 +146,22 @@ def test_what_is_not_reached_or_not_seen_does_not_count(G: TransferFunction, see
     assert np.abs(found.cancelled - 3).min() < 1e-6
     assert np.abs(found.cancelled - 4).min() < 1e-6
     assert found.stable == bibo(G).stable
+
+
+@pytest.mark.parametrize(
+    ("L", "simple"),
+    [
+        ("1/s^2", True),
+        ("1.5707963267948966 exp(-s)/s", True),
+        # s = 0 solves (s + 1)^2 = (3 s + 1) exp(-s), and so does its derivative: 2 = 3 - 1.
+        ("-(3s+1) exp(-s)/(s+1)^2", False),
+        ("s exp(-s)/(s (s+1))", True),
+        ("s^2 exp(-s)/(s^2 (s+1))", False),
+    ],
+)
+def test_repeated_closed_loop_poles_on_the_axis(L: str, simple: bool) -> None:
+    loop = FeedbackLoop(plant=parse_transfer_function(L), controller=TransferFunction([], [], 1.0))
+    assert axis_poles_are_simple(loop) is simple
 
 
 @pytest.mark.parametrize("A", [[[1, 2]], [[np.nan]], [["a"]], [[1, 2], [3]], np.zeros((51, 51))])

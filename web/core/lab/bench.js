@@ -9,12 +9,14 @@ import { hasDerivative, hasIntegral } from "../workbench/loop.js";
 import { tidy } from "../scale.js";
 
 /** @param {LabBench} bench @returns {State} */
-export function stateOf({ plant, controller, horizon, sliders }) {
+export function stateOf({ plant, actuator, sensor, controller, horizon, sliders, response, laplace }) {
+  const start = startingAnalyses();
+  const analyses = { ...start, response: { ...start.response, ...response }, laplace: { ...start.laplace, ...(laplace && { input: laplace }) } };
   const { form, Kc, tau_I, tau_D, alpha, action } = controller;
   return {
     plant,
-    actuator: "",
-    sensor: "",
+    actuator: actuator ?? "",
+    sensor: sensor ?? "",
     horizon,
     controller: {
       type: typeOf(tau_I !== null, Boolean(tau_D)),
@@ -26,7 +28,7 @@ export function stateOf({ plant, controller, horizon, sliders }) {
       beta: 1,
       action,
     },
-    view: { signal: "setpoint", show: [], analyses: startingAnalyses() },
+    view: { signal: "setpoint", show: [], analyses },
   };
 }
 

@@ -22,8 +22,14 @@
  * @property {import("../types.js").System} plant
  * @property {string} plant_text
  * @property {string} plant_mathml
+ * @property {string | null} actuator  as it is typed
+ * @property {string | null} actuator_mathml
+ * @property {string | null} sensor
+ * @property {string | null} sensor_mathml
  * @property {{type: string, form: "ideal" | "series", Kc: number, tau_I: number | null, tau_D: number | null, alpha: number, action: "reverse" | "direct"}} controller
  * @property {number | null} horizon
+ * @property {Partial<import("../types.js").ResponseView> | null} response  how the analysis opens
+ * @property {import("../types.js").InputShape | null} laplace
  * @property {string[]} panels
  * @property {LabSlider[]} sliders
  */

@@ -74,7 +74,7 @@
  * @property {boolean} complete
  * @property {"stable" | "marginal" | "unstable"} verdict
  * @property {string} because
- * @property {boolean | null} lyapunov_stable
+ * @property {boolean} lyapunov_stable
  * @property {boolean} asymptotically_stable
  * @property {{eigenvalue: Complex, algebraic: number, geometric: number, largest_block: number, singular_values: number[], threshold: number}[] | null} axis_modes
  * @property {{stable: boolean, poles: Complex[], cancelled: Complex[], because: string, unbounded: {name: string, u: string, output: string} | null} | null} bibo

@@ -1,6 +1,6 @@
 /** Low-order models of the plant over its true step response, and what a first- or second-order plant is like. */
 
-/** @import {ApproximateAnswer, Character, LowOrderModel} from "../../core/workbench/analysis-types.js" */
+/** @import {ApproximateAnswer, LowOrderModel} from "../../core/workbench/analysis-types.js" */
 /** @import {Api} from "../../core/api.js" */
 /** @import {Store} from "../../core/store.js" */
 /** @import {AnalysesView, State, System, Table} from "../../core/types.js" */
@@ -48,8 +48,14 @@ function asPlant({ type, K, tau, zeta, theta }) {
   return zeta === null ? null : { type: "sopdt", K, tau, zeta, theta };
 }
 
-/** @param {HTMLElement} host @param {Store} store @param {Api} api @returns {() => void} */
-export function mount(host, store, api) {
+/**
+ * @param {HTMLElement} host
+ * @param {Store} store
+ * @param {Api} api
+ * @param {{plantGiven?: boolean}} [options]  on the bench of a lab the plant is not to be changed
+ * @returns {() => void}
+ */
+export function mount(host, store, api, { plantGiven = false } = {}) {
   const unit = store.answers.time_unit;
   const shown = () => store.get().view.analyses.model_type;
   const type = h("segmented-control", { label: "Models of", class: "small" });
@@ -82,14 +88,14 @@ export function mount(host, store, api) {
       h("td", {}, formula),
       ...values.map((value) => h("td", {}, formatShort(value))),
       h("td", {}, `${formatFixed(model.max_deviation_pct, 1)}\u202f%`),
-      h("td", {}, h("button", { type: "button", class: "button use", "aria-label": `Use the ${model.type} model by ${model.name} as the plant`, onclick: () => use(model) }, "Use")),
+      plantGiven ? null : h("td", {}, h("button", { type: "button", class: "button use", "aria-label": `Use the ${model.type} model by ${model.name} as the plant`, onclick: () => use(model) }, "Use")),
     );
   }
 
   function render() {
     const answer = /** @type {ApproximateAnswer} */ (analysis.answer);
     type.value = shown();
-    const header = ["Method", "Model", "K", `τ [${unit}]`, ...(shown() === "FOPDT" ? [] : ["ζ"]), `θ [${unit}]`, "Largest deviation", ""];
+    const header = ["Method", "Model", "K", `τ [${unit}]`, ...(shown() === "FOPDT" ? [] : ["ζ"]), `θ [${unit}]`, "Largest deviation", ...(plantGiven ? [] : [""])];
     const caption = `${shown() === "FOPDT" ? "First" : "Second"}-order models with dead time; deviation from the true step response, in per cent of K`;
     const models = answer.models.filter((model) => model.type === shown());
     const table = captioned(
@@ -97,7 +103,7 @@ export function mount(host, store, api) {
       h("table", { class: "values models" }, headRow(header), h("tbody", {}, ...models.filter(({ valid }) => valid).map(row))),
     );
     const refused = models.filter(({ valid }) => !valid).map((model) => h("p", { class: "finding" }, h("strong", {}, `No ${nameOf(model)}: `), sentence(model.reason)));
-    words.replaceChildren(part("Models", ...(answer.reason ? [h("p", { class: "finding" }, sentence(answer.reason))] : [table, ...refused])), character(answer.character, answer.plant.order, unit));
+    words.replaceChildren(part("Models", ...(answer.reason ? [h("p", { class: "finding" }, sentence(answer.reason))] : [table, ...refused])), character(answer, unit, plantGiven));
   }
 
   const panel = mountAnalysisPanel(
@@ -136,10 +142,12 @@ export function mount(host, store, api) {
   };
 }
 
-/** @param {Character | null} found @param {number} order @param {string} unit */
-function character(found, order, unit) {
+/** @param {ApproximateAnswer} answer @param {string} unit @param {boolean} plantGiven */
+function character({ character: found, plant: { order } }, unit, plantGiven) {
   if (!found) {
-    return part("Character", h("p", { class: "finding" }, `Time constant, damping, overshoot and period are those of a system of first or second order; this plant has order ${order}. Use one of the models as the plant to read them.`));
+    const zero = order === 1 || order === 2;
+    const why = zero ? "The plant is zero: it has none of them." : `This plant has order ${order}.${plantGiven ? "" : " Use one of the models as the plant to read them."}`;
+    return part("Character", h("p", { class: "finding" }, `Time constant, damping, overshoot and period are those of a system of first or second order. ${why}`));
   }
   const rows = CHARACTER_FIELDS.filter((field) => order === 2 || ["K", "tau", "t_63", "initial_slope"].includes(field)).map((field) => {
     const cell = valueCell();

@@ -46,8 +46,14 @@ function whyNoSum({ input, sum }) {
   return null;
 }
 
-/** @param {HTMLElement} host @param {Store} store @param {Api} api @returns {() => void} */
-export function mount(host, store, api) {
+/**
+ * @param {HTMLElement} host
+ * @param {Store} store
+ * @param {Api} api
+ * @param {{plantGiven?: boolean}} [options]  on the bench of a lab the plant is not to be changed
+ * @returns {() => void}
+ */
+export function mount(host, store, api, { plantGiven = false } = {}) {
   const view = () => store.get().view.analyses.response;
   /** @param {Partial<ResponseView>} patch */
   const change = (patch) => store.setAnalyses({ response: { ...view(), ...patch } });
@@ -142,7 +148,7 @@ export function mount(host, store, api) {
       title: "Response",
       help: ANALYSIS_HELP["response"] ?? "",
       controls: [of],
-      form: [inputForm.root, h("div", { class: "form-fields" }, from.root, values.root), h("div", { class: "form-fields" }, sum, slices, examplesPlace)],
+      form: [inputForm.root, h("div", { class: "form-fields" }, from.root, values.root), h("div", { class: "form-fields" }, sum, slices, plantGiven ? null : examplesPlace)],
       words: [formula, ends, cut, impulses, adds],
       figure: createFigure,
       subject: () => JSON.stringify([store.get().plant, view()]),

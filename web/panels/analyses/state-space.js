@@ -8,6 +8,7 @@
 import { createAnalysis } from "../../core/workbench/analysis.js";
 import { ANALYSIS_HELP } from "../../core/explain.js";
 import { formatNumber, sentence } from "../../core/format.js";
+import { groupBy } from "../../core/groups.js";
 import { formatComplex, formatShort, rootsText } from "../../core/roots.js";
 import { mountAnalysisPanel } from "../../components/analysis-panel.js";
 import { openCard } from "../../components/card.js";
@@ -22,8 +23,14 @@ function requestOf({ plant, view }) {
   return { system: plant, cancel_tolerance: view.analyses.cancel_tolerance };
 }
 
-/** @param {HTMLElement} host @param {Store} store @param {Api} api @returns {() => void} */
-export function mount(host, store, api) {
+/**
+ * @param {HTMLElement} host
+ * @param {Store} store
+ * @param {Api} api
+ * @param {{plantGiven?: boolean}} [options]  on the bench of a lab the plant is not to be changed
+ * @returns {() => void}
+ */
+export function mount(host, store, api, { plantGiven = false } = {}) {
   const { answers } = store;
   const tolerance = h("number-field", { label: "Zeros cancel poles up to a distance of", min: 0, max: 0.1 });
   tolerance.addEventListener("value-change", (event) => store.setAnalyses({ cancel_tolerance: /** @type {CustomEvent<{value: number}>} */ (event).detail.value }));
@@ -71,7 +78,7 @@ export function mount(host, store, api) {
       id: "state_space",
       title: "State space",
       help: ANALYSIS_HELP["state_space"] ?? "",
-      form: [h("div", { class: "form-fields" }, edit, tolerance)],
+      form: [h("div", { class: "form-fields" }, plantGiven ? null : edit, tolerance)],
       words: [words],
       render,
       table: () => (analysis?.answer ? tableOf(analysis.answer) : null),
@@ -101,7 +108,18 @@ function rank(title, name, found, weak, weakName) {
 
 /** @param {StateSpaceAnswer} found */
 function modes({ modes: list, minimal: whole }) {
-  const rows = list.map((mode) => [formatComplex(mode.pole), yesNo(mode.stable), yesNo(mode.controllable), formatNumber(mode.sigma_controllable, 2), yesNo(mode.observable), formatNumber(mode.sigma_observable, 2)]);
+  // A repeated eigenvalue has one test and takes one row.
+  const alike = groupBy(list, ({ pole, ...tested }) => JSON.stringify([formatComplex(pole), tested]));
+  const rows = [...alike.values()].flatMap((group) =>
+    group.slice(0, 1).map((mode) => [
+      `${formatComplex(mode.pole)}${group.length > 1 ? ` (${group.length}×)` : ""}`,
+      yesNo(mode.stable),
+      yesNo(mode.controllable),
+      formatNumber(mode.sigma_controllable, 2),
+      yesNo(mode.observable),
+      formatNumber(mode.sigma_observable, 2),
+    ]),
+  );
   const hidden = list.filter(({ controllable, observable }) => !(controllable && observable));
   const said = whole || hidden.length === 0 ? "Every mode is seen by input and output: the realisation is minimal." : `Hidden from the transfer function: ${rootsText(hidden.map(({ pole }) => pole))}.`;
   return part("Modes", valueTable("Each mode by the Popov–Belevitch–Hautus test, with the singular value that decides", ["Pole", "Stable", "Controllable", "σ [A − pI, B]", "Observable", "σ [A − pI; C]"], rows), h("p", { class: hidden.length > 0 ? "finding warn" : "finding" }, said));

@@ -21,13 +21,16 @@ const ACTIONS = { tau_I: "Integral action", tau_D: "Derivative action" };
  * @returns {() => void}
  */
 export function mount(host, store, _api, bench) {
-  const plant = h("span", { class: "bench-plant" });
-  showMath(plant, bench.plant_mathml);
+  const blocks = [
+    { name: "Actuator", mathml: bench.actuator_mathml },
+    { name: "Process", mathml: bench.plant_mathml },
+    { name: "Sensor", mathml: bench.sensor_mathml },
+  ].flatMap(({ name, mathml }) => (mathml === null ? [] : [block(name, mathml)]));
   const knobs = bench.sliders.map((slider) => knob(slider, store));
   const root = h(
     "section",
     { class: "bench-knobs", "aria-label": "Controller" },
-    h("p", { class: "bench-process" }, h("span", { class: "bench-caption" }, "Process"), " ", plant),
+    h("p", { class: "bench-process" }, ...blocks),
     h("div", { class: "knob-row" }, ...knobs.map(({ element }) => element)),
   );
   host.append(root);
@@ -52,6 +55,13 @@ export function mount(host, store, _api, bench) {
     stopAnswers();
     root.remove();
   };
+}
+
+/** @param {string} name @param {string} mathml */
+function block(name, mathml) {
+  const formula = h("span", { class: "bench-plant" });
+  showMath(formula, mathml);
+  return h("span", { class: "bench-block" }, h("span", { class: "bench-caption" }, name), " ", formula);
 }
 
 /** @param {LabSlider} slider @param {Store} store */

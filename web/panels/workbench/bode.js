@@ -6,7 +6,7 @@
 /** @import {BodeCurve} from "../../plots/bode.js" */
 
 import { cornerInWords, startInWords } from "../../core/workbench/corners.js";
-import { PLOT_HELP } from "../../core/explain.js";
+import { CUT_LOOP, PLOT_HELP } from "../../core/explain.js";
 import { formatFixed, formatNumber } from "../../core/format.js";
 import { mountPlotPanel } from "../../components/plot-panel.js";
 import { bodePlot } from "../../plots/bode.js";
@@ -52,6 +52,7 @@ export function mount(host, store, _api) {
       ...CURVES.map((curve) => legendToggle(curve, on.has(curve), () => toggle(curve))),
       legendToggle("sketch", sketching !== null, toggleSketch),
     ],
+    note: () => (answers.panels.bode?.L === null ? CUT_LOOP : ""),
     table: () => (answers.panels.bode ? bodeTable(answers.panels.bode, sketch(), answers.time_unit) : null),
     describe() {
       const margins = answers.panels.margins;
@@ -82,12 +83,12 @@ function bodeTable({ omega, L, P, C }, sketch, unit) {
   const header = [`ω [rad/${unit}]`, "|L| [dB]", "arg L [°]", ...(sketch ? ["corner of the asymptotes"] : []), "|P| [dB]", "arg P [°]", "|C| [dB]", "arg C [°]"];
   const rows = Array.from(omega, (w, i) => [
     w,
-    L.mag_dB[i] ?? null,
-    L.phase_deg[i] ?? null,
+    L?.mag_dB[i] ?? null,
+    L?.phase_deg[i] ?? null,
     ...(sketch ? [""] : []),
-    ...others.flatMap(({ mag_dB, phase_deg }) => [mag_dB[i] ?? null, phase_deg[i] ?? null]),
+    ...others.flatMap((curve) => [curve?.mag_dB[i] ?? null, curve?.phase_deg[i] ?? null]),
   ]);
-  if (!sketch) return { header, rows };
+  if (!sketch || !L) return { header, rows };
   const blank = [null, null, null, null];
   const corners = [
     [0, null, sketch.initial_phase_deg, startInWords(sketch), ...blank],

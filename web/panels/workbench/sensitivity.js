@@ -67,7 +67,7 @@ export function mount(host, store, _api) {
     if (!sensitivity) return null;
     return {
       header: [`ω [rad/${answers.time_unit}]`, ...GANG.map((name) => `|${name}| [dB]`)],
-      rows: Array.from(sensitivity.omega, (w, i) => [w, ...GANG.map((name) => sensitivity[`${name}_dB`][i] ?? null)]),
+      rows: Array.from(sensitivity.omega, (w, i) => [w, ...GANG.map((name) => sensitivity[`${name}_dB`]?.[i] ?? null)]),
     };
   }
 

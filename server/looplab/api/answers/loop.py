@@ -270,7 +270,7 @@ class MetricsPanel(Answer):
 
 
 class SensitivityPanel(Answer):
-    """The gang of six over omega [rad/time], magnitudes [dB].
+    """The gang of six over omega [rad/time], magnitudes [dB]; one that is zero is null.
 
     CFS: r to u, (C + F) S; TF: r to y, P (C + F) S, with the feedforward F = Kc (beta - 1) in
     u = C (r - y) + F r. They are CS and T where F is zero.
@@ -278,12 +278,12 @@ class SensitivityPanel(Answer):
 
     key: str
     omega: Numbers
-    S_dB: Numbers
-    PS_dB: Numbers
-    CS_dB: Numbers
-    T_dB: Numbers
-    CFS_dB: Numbers
-    TF_dB: Numbers
+    S_dB: Numbers | None
+    PS_dB: Numbers | None
+    CS_dB: Numbers | None
+    T_dB: Numbers | None
+    CFS_dB: Numbers | None
+    TF_dB: Numbers | None
     feedforward: float
 
 

@@ -161,7 +161,7 @@ class StabilityAnswer(Answer):
     complete: bool
     verdict: Literal["stable", "marginal", "unstable"]
     because: str
-    lyapunov_stable: bool | None
+    lyapunov_stable: bool
     asymptotically_stable: bool
     axis_modes: list[AxisMode] | None
     bibo: BIBOAnswer | None

@@ -47,11 +47,11 @@ def margins_panel(context: LoopContext) -> dict[str, Any]:
 
 
 def sensitivity(context: LoopContext) -> dict[str, Any]:
-    """Magnitudes of the gang of six."""
+    """Magnitudes of the gang of six; None for one that is zero."""
     gang = gang_of_six(context.loop, context.open_loop.omega)
     curves = {name: getattr(gang, name) for name in GANG}
-    # Exactly on a pole or zero of the imaginary axis a product is 0 * inf, and a system that is zero has no decibels:
-    # such points are left out.
-    whole = np.all([np.isfinite(value) for value in curves.values()], axis=0)
-    decibels = {f"{name}_dB": value[whole] * DECIBELS for name, value in curves.items()}
+    # Exactly on a pole or zero of the imaginary axis a product is 0 * inf: such points are left out.
+    there = {name: value for name, value in curves.items() if np.isfinite(value).any()}
+    whole = np.all([np.isfinite(value) for value in there.values()], axis=0)
+    decibels = {f"{name}_dB": value[whole] * DECIBELS if name in there else None for name, value in curves.items()}
     return {"omega": gang.omega[whole], **decibels, "feedforward": context.loop.feedforward}

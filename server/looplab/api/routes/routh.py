@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 import numpy as np
+import numpy.typing as npt
 from fastapi import APIRouter, Body
 from pydantic import Field, model_validator
 from starlette.responses import Response
@@ -27,6 +28,7 @@ from looplab.engine.stability import (
 )
 from looplab.engine.stability.cancellation import hidden_modes
 from looplab.engine.stability.routh import number_text, polynomial_text
+from looplab.engine.systems.polynomial import ComplexArray
 from looplab.schemas import Loop, Model, located
 from looplab.schemas.base import Coefficients
 
@@ -95,6 +97,10 @@ def _exactness(found: RouthArray) -> dict[str, str]:
     return {"tolerance": "computed with fractions: nothing is rounded"} if found.exact else {}
 
 
+def _on_axis(poles: ComplexArray) -> npt.NDArray[np.bool_]:
+    return np.asarray(np.abs(poles.real) <= 1e-9 * np.abs(poles))
+
+
 def _without_array(loop: FeedbackLoop, why: str) -> tuple[dict[str, Any], dict[str, str]]:
     verdict, count = closed_loop_verdict(loop), nyquist_count(loop.open_loop)
     # Nyquist's count on the factors is the surer one where many poles lie close together.
@@ -106,10 +112,15 @@ def _without_array(loop: FeedbackLoop, why: str) -> tuple[dict[str, Any], dict[s
     empty: dict[str, Any] = dict.fromkeys(
         ("polynomial", "polynomial_text", "exact", "array", "auxiliary_polynomials", *_COUNTS, "tolerance")
     )
-    reasons = dict.fromkeys(empty, why)
-    if right is not None:
-        del reasons["rhp_roots"]
-    return empty | {"rhp_roots": right, "stable": stable, "because": because}, reasons
+    known = {"rhp_roots": right}
+    L = loop.open_loop
+    if right is not None and not count.through_minus_one and not (loop.theta and L.gain):
+        # So many roots there are in all, and only what is hidden can stand on the axis.
+        hidden = hidden_modes(L.zeros, L.poles) if L.gain else L.poles
+        axis = int(np.count_nonzero(_on_axis(hidden)))
+        known |= {"imaginary_axis_roots": axis, "lhp_roots": L.order - right - axis}
+    reasons = {name: why for name in empty if known.get(name) is None}
+    return empty | known | {"stable": stable, "because": because}, reasons
 
 
 def _loop_array(loop: FeedbackLoop) -> tuple[dict[str, Any], dict[str, str]]:
@@ -121,7 +132,7 @@ def _loop_array(loop: FeedbackLoop) -> tuple[dict[str, Any], dict[str, str]]:
         return _without_array(loop, error.message)
     L = loop.open_loop
     hidden = hidden_modes(L.zeros, L.poles)
-    if L.gain and not np.any(np.abs(hidden.real) <= 1e-9 * np.abs(hidden)):
+    if L.gain and not np.any(_on_axis(hidden)):
         Z = nyquist_count(L).Z
         if Z is not None and (found.rhp_roots, found.imaginary_axis_roots) != (Z, 0):
             return _without_array(loop, DIGITS_LOST)
@@ -208,7 +219,9 @@ def routh(request: Annotated[RouthRequest, Body(openapi_examples=EXAMPLES)]) -> 
     else:
         reasons["pi_region"] = "not asked for: give tau_I"
     name = "Kc" if isinstance(loop.controller, PID) else "k"
-    gain = {"name": name, "value": loop.gain, "in_range": loop.gain in found}
+    # The ranges are open, and 0 is the end of one of them: there the loop itself tells.
+    inside = loop.gain in found or (loop.gain == 0.0 and answer["stable"])
+    gain = {"name": name, "value": loop.gain, "in_range": inside}
     return json_response(
         answer | {"gain": gain, "gain_ranges": _ranges(found), "pi_region": region, "reasons": reasons}
     )

@@ -17,6 +17,7 @@ from looplab.engine.stability import (
     BIBO,
     InternalStability,
     StabilityNotion,
+    axis_poles_are_simple,
     bibo,
     closed_loop_poles,
     closed_loop_verdict,
@@ -94,6 +95,8 @@ def _loop(request: Loop) -> dict[str, Any]:
     if verdict.closed_loop_stable != inside.internally_stable:
         # A hidden mode on the axis beside dead time: Nyquist's count does not see it.
         word, because = ("unstable" if word == "unstable" else "marginal"), inside.because
+    if word == "marginal" and not axis_poles_are_simple(loop):
+        word, because = "unstable", "a repeated closed-loop pole lies on the imaginary axis"
     stable_T = inside.T.stable
     see = "T" if stable_T else inside.T.because
     return {
@@ -101,7 +104,7 @@ def _loop(request: Loop) -> dict[str, Any]:
         "complete": found.complete,
         "verdict": word,
         "because": because,
-        "lyapunov_stable": True if inside.internally_stable else None if word == "marginal" else False,
+        "lyapunov_stable": word != "unstable",
         "asymptotically_stable": inside.internally_stable,
         "axis_modes": None,
         "bibo": {
@@ -141,8 +144,6 @@ def stability(request: Annotated[StabilityRequest, Body(openapi_examples=EXAMPLE
     if request.loop is not None:
         answer = _loop(request.loop)
         reasons["axis_modes"] = "given for a system or a matrix"
-        if answer["lyapunov_stable"] is None:
-            reasons["lyapunov_stable"] = "poles lie on the imaginary axis; post the loop's matrix as A to decide"
         if not answer["bibo"]["stable"]:
             reasons["bibo.unbounded"] = "given for a system"
         return json_response(answer | {"reasons": reasons})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import groupby
@@ -13,7 +14,7 @@ from looplab.engine.laplace.partial_fractions import PartialFractions
 from looplab.engine.systems.notation import latex_number, number
 from looplab.engine.systems.polynomial import FloatArray
 
-# A part this much smaller than its partner is left out of the writing (not of the values).
+# A part this much smaller than its partners, each at its own largest, is left out of the writing (not of the values).
 _INVISIBLE = 1e-12
 
 
@@ -72,7 +73,13 @@ def _argument(rate: float, t: str, style: Style, digits: int) -> str:
 def _addends(mode: Mode, t: str, style: Style, digits: int) -> list[Addend]:
     """t^k cos(bt) and t^k sin(bt) with their factors; the exponential is left to the caller."""
     out: list[Addend] = []
-    largest = max((abs(c) for c in mode.coefficients), default=0.0)
+    rate = abs(mode.pole) or 1.0
+
+    def size(k: int, factor: float) -> float:
+        # ln of the fraction behind t^k: k! grows faster than any t^k falls, and large powers count late.
+        return math.log(abs(factor)) + math.lgamma(k + 1.0) - k * math.log(rate) if factor else -math.inf
+
+    visible = math.log(_INVISIBLE) + max((size(k, abs(c)) for k, c in enumerate(mode.coefficients)), default=0.0)
     angle = _argument(mode.pole.imag, t, style, digits)
     if angle.startswith(style.left) and angle.endswith(style.right):
         angle = angle[len(style.left) : -len(style.right)]
@@ -80,7 +87,7 @@ def _addends(mode: Mode, t: str, style: Style, digits: int) -> list[Addend]:
         powers = style.power(t, k) if k else ""
         waves = [(c.real, style.cos), (-c.imag, style.sin)] if mode.pole.imag else [(c.real, "")]
         for factor, wave in waves:
-            if abs(factor) > _INVISIBLE * largest:
+            if size(k, factor) > visible:
                 called = f"{wave}{style.left}{angle}{style.right}" if wave else ""
                 out.append((factor, " ".join(part for part in (powers, called) if part)))
     return out
@@ -168,13 +175,17 @@ def _pair_numerators(pole: complex, terms: list[tuple[int, complex]]) -> list[tu
 def _pair(pole: complex, terms: list[tuple[int, complex]], style: Style, digits: int) -> list[Addend]:
     out: list[Addend] = []
     rows = _pair_numerators(pole, terms)
-    size = max(float(np.abs(row / [1.0, abs(pole)]).max()) for _, row in rows)
+    rate = math.log(abs(pole))
+
+    def size(power: int, degree: int, factor: float) -> float:
+        # ln of the term where |s| is that of the pole.
+        return math.log(abs(factor)) + (degree - 2 * power) * rate if factor else -math.inf
+
+    sizes = [max(size(power, 1, float(B)), size(power, 0, float(C))) for power, (B, C) in rows]
+    visible = math.log(_INVISIBLE) + max(sizes)
     for power, (B, C) in rows:
-        addends = []
-        if abs(B) > _INVISIBLE * size:
-            addends.append((float(B), "s"))
-        if abs(C) > _INVISIBLE * size * abs(pole):
-            addends.append((float(C), ""))
+        parts = [(1, float(B), "s"), (0, float(C), "")]
+        addends = [(factor, body) for degree, factor, body in parts if size(power, degree, factor) > visible]
         if addends:
             sign = -1.0 if addends[0][0] < 0 else 1.0
             top = _sum([(sign * c, body) for c, body in addends], style, digits)

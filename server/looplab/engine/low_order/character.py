@@ -110,8 +110,9 @@ def _step(system: TransferFunction, K: float | None, out: dict[str, float | None
 
 def _first_order(system: TransferFunction, out: dict[str, float | None], why: dict[str, str]) -> Classification:
     pole = float(system.poles[0].real)
-    for name in ("zeta", "omega_n", "omega_d", "period", "tau_2", "overshoot_pct", "decay_ratio", "t_peak"):
+    for name in ("zeta", "omega_n", "omega_d", "period", "overshoot_pct", "decay_ratio", "t_peak"):
         why[name] = "undefined: a first-order system does not oscillate"
+    why["tau_2"] = "undefined: a first-order system has one time constant"
     if pole == 0:
         why["tau"] = why["tau_1"] = "undefined: an integrator has no time constant"
         return "integrating"

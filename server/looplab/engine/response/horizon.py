@@ -23,10 +23,20 @@ def response_horizon(poles: ComplexArray, signal: InputSignal, theta: float = 0.
     -------
     float
         After the last change of the input and the dead time: eight time constants of the slowest mode (three of a
-        growing one), at least eight periods of a sine or of a lasting oscillation.
+        growing one) and one and a half times what the others delay it, at least eight periods of a sine or of a
+        lasting oscillation.
     """
-    spans = [10.0 / abs(p) if p.real == 0 else (8.0 if p.real < 0 else 3.0) / abs(p.real) for p in poles if p != 0]
-    spans = [min(s, 400.0 / abs(p)) for s, p in zip(spans, poles[poles != 0], strict=True)]
+    # Many equal lags answer late: each delays the step by Re(-1/p), its time constant where p is real.
+    delays = [-(1.0 / complex(p)).real for p in poles if p.real < 0]
+    late = 1.5 * (sum(delays) - max(delays, default=0.0))
+
+    def span(p: complex) -> float:
+        if p.real == 0:
+            return 10.0 / abs(p)
+        own = min((8.0 if p.real < 0 else 3.0) / abs(p.real), 400.0 / abs(p))
+        return own + late if p.real < 0 else own
+
+    spans = [span(complex(p)) for p in poles if p != 0]
     lasting = [abs(p) for p in poles if p != 0 and abs(p.real) < 1e-3 * abs(p)]
     spans += [16.0 * np.pi / w for w in [*lasting, signal.omega] if w]
     past = float(signal.times[-1])

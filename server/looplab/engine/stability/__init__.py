@@ -1,5 +1,6 @@
 """Closed-loop poles, stability verdicts and notions, the Routh array, stable gain ranges and the root locus."""
 
+from looplab.engine.stability.axis_poles import axis_poles_are_simple
 from looplab.engine.stability.bibo import BIBO, BoundedInput, bibo
 from looplab.engine.stability.characteristic import characteristic_polynomial
 from looplab.engine.stability.closed_loop import ClosedLoopPoles, Verdict, closed_loop_poles, closed_loop_verdict
@@ -41,6 +42,7 @@ __all__ = [
     "StabilityNotion",
     "Verdict",
     "axis_crossings",
+    "axis_poles_are_simple",
     "bibo",
     "breakaway_points",
     "characteristic_polynomial",

@@ -132,7 +132,8 @@ def _member(
         names = " and ".join(dict.fromkeys(_signed(p) for p in bad))
         return GangMember(poles, complete, False, f"the cancelled pole at {names} is still in it")
     if verdict.closed_loop_stable:
-        return GangMember(poles, complete, True, "every pole lies in the left half-plane")
+        because = "every pole lies in the left half-plane" if poles.size else "it has no poles"
+        return GangMember(poles, complete, True, because)
     if moved_gone.size and all(_left(complex(p)) for p in moved_left):
         return GangMember(poles, complete, True, "its own zeros cancel the poles that are not stable")
     return GangMember(poles, complete, False, verdict.because)

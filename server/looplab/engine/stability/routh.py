@@ -238,7 +238,8 @@ def _because(degree: int, right: int, axis: int) -> str:
     if not degree:
         return "a constant has no roots"
     if not right and not axis:
-        return f"the first column does not change sign: all {degree} roots lie in the left half-plane"
+        roots = f"all {degree} roots lie" if degree > 1 else "the one root lies"
+        return f"the first column does not change sign: {roots} in the left half-plane"
     parts = []
     if right:
         parts.append(

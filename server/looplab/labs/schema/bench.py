@@ -5,10 +5,15 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, model_validator
 
 from looplab.labs.schema.base import Line, Model, Number
-from looplab.schemas import Controller, Loop, System
+from looplab.schemas import Controller, ExpressionSystem, InputShape, Loop, System
+from looplab.schemas.laplace import TransformInput
 
 Knob = Literal["Kc", "tau_I", "tau_D", "alpha"]
-Panel = Literal["step", "bode", "nyquist", "root_locus", "sensitivity", "numbers"]
+Panel = Literal[
+    "step", "bode", "nyquist", "nichols", "root_locus", "sensitivity", "numbers",
+    "response", "laplace", "routh", "stability", "state_space", "low_order",
+    "limits", "bode_integral", "spectrum",
+]  # fmt: skip
 
 
 class Slider(Model):
@@ -38,16 +43,33 @@ class Slider(Model):
         return self
 
 
+class ResponseView(Model):
+    """How the analysis `response` opens."""
+
+    of: Literal["plant", "open_loop", "closed_loop"] = "plant"
+    input: InputShape
+    sum: Literal["superposition", "convolution"] | None = Field(
+        default=None, description="Show y as a sum: of steps, or of answers to slices of the input."
+    )
+
+
 class Bench(Model):
     """The loop of the lab. Every exercise that does not name a plant of its own is about this one."""
 
     plant: System
     controller: Controller = Field(description="The settings the bench opens with.")
+    actuator: ExpressionSystem | None = Field(default=None, description="Between controller and plant; null is 1.")
+    sensor: ExpressionSystem | None = Field(
+        default=None, description="What the controller sees of the output; null is 1. Dead time may sit in either."
+    )
     time_unit: Literal["s", "min"] = "s"
     sliders: Annotated[list[Slider], Field(min_length=1, max_length=8)]
-    panels: Annotated[list[Panel], Field(min_length=1, max_length=6)] = Field(
-        description="What the bench can show, the most important first; the verdict is always there."
+    panels: Annotated[list[Panel], Field(min_length=1, max_length=8)] = Field(
+        description="What the bench can show, the most important first: plots of the loop, and analyses of the plant "
+        "and the loop with words and tables. The verdict is always there."
     )
+    response: ResponseView | None = Field(default=None, description="What `response` opens with.")
+    laplace: TransformInput | None = Field(default=None, description="The input that `laplace` opens with.")
     horizon: Annotated[float, Field(gt=0)] | None = Field(
         default=None, description="Length of the step response; found from the loop where left out."
     )
@@ -79,8 +101,11 @@ class Bench(Model):
         data: dict[str, Any] = self.controller.model_dump()
         return type(self.controller).model_validate({**data, **settings})
 
+    def loop_of(self, controller: Controller) -> Loop:
+        return Loop(plant=self.plant, controller=controller, actuator=self.actuator, sensor=self.sensor)
+
     def loop_with(self, settings: dict[str, float | None]) -> Loop:
-        return Loop(plant=self.plant, controller=self.controller_with(settings))
+        return self.loop_of(self.controller_with(settings))
 
 
 def check_setting(slider: Slider, value: float | None) -> None:
