@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 
-from looplab.engine.frequency import margins
+from looplab.engine.frequency import margins, nyquist_count
 from looplab.engine.systems import parse_transfer_function
 
 
@@ -73,3 +73,29 @@ def test_a_hidden_mode_on_the_axis_is_no_crossover() -> None:
 def test_a_gain_that_stays_above_1() -> None:
     assert "never falls to 1" in margins(parse_transfer_function("2 exp(-s)")).reasons["PM_deg"]
     assert "never reaches 1" in margins(parse_transfer_function("0.5 exp(-s)")).reasons["PM_deg"]
+
+
+@pytest.mark.parametrize("text", ["1/s^2", "1/(s^2+1)", "-2"])
+def test_a_phase_that_stands_at_the_limit_is_said_to_stand_there(text: str) -> None:
+    """1/s^2 and, beyond its resonance, 1/(s^2+1) are real and negative: a gain margin would be any number."""
+    result = margins(parse_transfer_function(text))
+    if result.GM is None:
+        assert "stands at -180 deg" in result.reasons["GM"]
+    else:  # a pure gain has its margin at omega = 0
+        assert result.GM == 0.5
+
+
+@pytest.mark.parametrize("text", ["exp(-s)", "(s-1)/(s+1)", "(s^2-s+4)/(s^2+s+4) exp(-0.2 s)"])
+def test_a_gain_of_1_at_every_frequency_crosses_nothing(text: str) -> None:
+    """An all-pass: where it would cross 1 is rounding."""
+    result = margins(parse_transfer_function(text))
+    assert result.gain_crossovers == ()
+    assert "is 1 at every frequency" in result.reasons["PM_deg"]
+
+
+@pytest.mark.parametrize("text", ["-1", "-(s+1)/(s+2)"])
+def test_an_open_loop_that_ends_in_minus_one_is_not_stable(text: str) -> None:
+    """1 + L(inf) = 0: the loop has no solution."""
+    L = parse_transfer_function(text)
+    assert not margins(L).closed_loop_stable
+    assert "no solution" in str(nyquist_count(L).reason)

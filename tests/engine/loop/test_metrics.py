@@ -157,3 +157,27 @@ def test_default_horizon_suits_the_plant(plant: str) -> None:
     slow = max((1 / abs(p) for p in P.poles if p), default=0)
     assert 2 * slow <= horizon <= 1000 * (slow + P.theta + 1)
     assert horizon == default_horizon(FeedbackLoop(P, PID(0.7, 2.0)))
+
+
+def test_a_response_that_jumps_needs_no_time_to_rise() -> None:
+    """A pure gain is at its end at once. (s + 9)/(9 s + 1), closed (s + 9)/(10 (s + 1)), jumps to 1/10 and rises to 9/10:
+    y = 0.9 - 0.8 exp(-t) passes 90 % of that, 0.81, at ln(0.8/0.09)."""
+    for plant, rises in (("0.5", 0.0), ("(s+9)/(9 s+1)", np.log(0.8 / 0.09))):
+        loop = FeedbackLoop(parse_transfer_function(plant), TransferFunction())
+        m = step_metrics(closed_loop_step(loop, 10.0, 501).setpoint, setpoint=1.0, stable=True)
+        assert m.t_rise == pytest.approx(rises, abs=1e-6)
+
+
+def test_integrals_that_end_before_the_response_does_say_so() -> None:
+    """The Ziegler-Nichols PI of 1/(s+1)^3 rings longer than the default horizon."""
+    loop = FeedbackLoop(parse_transfer_function("1/(s+1)^3"), PID(3.6, 3.023))
+    short, long = (step_metrics(closed_loop_step(loop, T).setpoint, setpoint=1.0, stable=True) for T in (30.0, 80.0))
+    for name in ("IAE", "ISE", "ITAE", "TV"):
+        assert "up to the horizon" in short.reasons[name]
+        assert name not in long.reasons
+        assert getattr(short, name) < getattr(long, name)
+
+
+def test_the_default_horizon_can_be_simulated_with_a_dead_time_as_short() -> None:
+    loop = FeedbackLoop(parse_transfer_function("exp(-0.001 s)/(s (s+0.000001))"), PID(1.0))
+    assert closed_loop_step(loop, default_horizon(loop)).setpoint.t.size >= 2

@@ -221,3 +221,13 @@ def test_the_chain_of_dead_time_poles_has_no_gap(plant: str, C: PID) -> None:
     count = count_in_rectangle(closed.open_loop, 1.0, left, 10.0, -top, top)
     assert count == listed.size
     assert count > 6
+
+
+def test_a_double_pole_on_the_axis_is_not_taken_for_two_beside_it() -> None:
+    """D + N = (s^2+1)^2 (s+1) over D = (s+1)^5: rounding puts the pair at +-j beside the axis, its mean stays on it."""
+    D = np.poly([-1.0] * 5)
+    wanted = np.polymul(np.polymul([1.0, 0.0, 1.0], [1.0, 0.0, 1.0]), [1.0, 1.0])
+    L = TransferFunction.from_polynomials(np.polysub(wanted, D), D)
+    verdict = closed_loop_verdict(FeedbackLoop(L, PID(1.0)))
+    assert (verdict.verdict, verdict.rhp_poles) == ("unstable", 0)
+    assert "repeated" in verdict.because

@@ -30,6 +30,8 @@ FloatArray = npt.NDArray[np.float64]
 NEGLIGIBLE = 0.05
 # Closer to the real axis than this [rad] rounding decides on which side the curve lies.
 ON_AXIS = 1e-9
+# Rounding of ln|L|.
+ROUNDING = 1e-13
 # Up to so many crossings plain numbers beat arrays.
 FEW = 40
 
@@ -143,6 +145,9 @@ def _gain_crossovers(L: TransferFunction, grid: Sampled) -> FloatArray:
     level = -grid.shift
     above = grid.curve.log_magnitude > level
     at = (above[1:] != above[:-1]).nonzero()[0]
+    # Where |L| stays at 1, as that of an all-pass does, it crosses nothing but in rounding.
+    away = np.abs(grid.curve.log_magnitude - level)
+    at = at[np.maximum(away[at], away[at + 1]) > ROUNDING]
     omega = grid.omega
     if at.size <= FEW:
         f, at_grid = scalar_loop(L.unit).log_magnitude, grid.curve.log_magnitude

@@ -9,7 +9,7 @@ from math import degrees, exp, isfinite, log, log10, pi, sqrt
 import numpy as np
 import numpy.typing as npt
 
-from looplab.engine.frequency.crossings import OFTEN, crossings
+from looplab.engine.frequency.crossings import OFTEN, ON_AXIS, ROUNDING, crossings
 from looplab.engine.frequency.nyquist import nyquist_count
 from looplab.engine.frequency.response import AXIS_GAP
 from looplab.engine.frequency.sampled import Sampled, UnitCurve
@@ -111,6 +111,12 @@ def _peaks_on(grid: Sampled) -> list[tuple[float, float]]:
     return out
 
 
+def _stands_on_the_real_axis(grid: Sampled) -> bool:
+    """Whether two neighbours on the grid lie on the negative real axis."""
+    on_axis = np.abs(np.mod(grid.phase, 2.0 * pi) - pi) <= ON_AXIS
+    return bool((on_axis[1:] & on_axis[:-1]).any())
+
+
 def _sensitivity_peaks(L: TransferFunction, grid: Sampled) -> dict[str, float]:
     (Ms, omega_Ms), (Mt, omega_Mt) = _peaks_on(grid)
     # Limits of L at both ends of the frequency axis, where they are finite.
@@ -200,6 +206,8 @@ def margins(L: TransferFunction) -> Margins:
         GM, omega_180, GM_dB = nearest.GM, nearest.omega, 20.0 * log10(nearest.GM)
     else:
         text = "infinite: the phase never reaches -180 deg" if L.gain else "undefined: the open loop is zero"
+        if L.gain and _stands_on_the_real_axis(found.grid):
+            text = "undefined: the phase stands at -180 deg, L is negative over a whole range of frequencies"
         reasons |= dict.fromkeys(("GM", "GM_dB", "omega_180"), text)
 
     gain_omega, gain_phase = found.gain_omega.tolist(), found.gain_phase.tolist()
@@ -218,6 +226,8 @@ def margins(L: TransferFunction) -> Margins:
         text = "infinite: the gain never reaches 1"
         if not L.gain:
             text = "undefined: the open loop is zero"
+        elif (np.abs(found.grid.log_magnitude) < ROUNDING).all():
+            text = "undefined: the gain is 1 at every frequency"
         elif abs(L.response(found.grid.omega[:1])[0]) > 1.0:
             text = "undefined: the gain never falls to 1"
         reasons |= dict.fromkeys(("PM_deg", "omega_c", "delay_margin"), text)

@@ -19,6 +19,8 @@ ComplexArray = npt.NDArray[np.complex128]
 
 # Closer to -1 than this the curve passes through it.
 ON_CURVE = 1e-9
+# A loop with L(inf) this close to -1 is refused as having no solution.
+ILL_POSED = 1e-12
 # Beyond this, next to poles on the axis, the curve is not drawn.
 LARGEST_DRAWN = 1e6
 OUT_OF_PICTURE = 50.0
@@ -105,6 +107,9 @@ def nyquist_count(L: TransferFunction) -> NyquistCount:
     .. [1] K. J. Astrom, R. M. Murray, Feedback Systems, 2nd ed., Princeton 2021, sec. 10.2.
     """
     P = right_half_plane(L.poles)
+    if L.theta == 0.0 and abs(L.high_frequency_gain + 1.0) < ILL_POSED:
+        reason = "L tends to -1 at high frequencies: the loop has no solution there, and N is not defined"
+        return NyquistCount(None, P, None, reason, True)
     if L.gain == 0.0 or (not L.order and not L.theta):
         return NyquistCount(0, P, P)
     found = crossings(L)

@@ -10,7 +10,7 @@ import numpy as np
 
 from looplab.engine.loop.feedback_loop import FeedbackLoop
 from looplab.engine.loop.hermite import HermiteCurves
-from looplab.engine.loop.step_response import ClosedLoopStep, Response
+from looplab.engine.loop.step_response import SHORTEST_DEAD_TIME, ClosedLoopStep, Response
 
 Numbers = dict[str, float | None]
 
@@ -36,7 +36,8 @@ class StepMetrics:
     decay_ratio : float or None
         Second overshoot over the first [-].
     IAE, ISE, ITAE : float or None
-        Integrals of \\|e\\|, e^2 and t\\|e\\| over the horizon, e = r - y [output*time, ...].
+        Integrals of \\|e\\|, e^2 and t\\|e\\| over the horizon, e = r - y [output*time, ...]. ``reasons`` says so where
+        the response has not settled by its end, or where they grow with it.
     TV : float or None
         Total variation of u over the horizon, the jump at t = 0 included [input].
     """
@@ -71,7 +72,7 @@ def _shape(curves: HermiteCurves, row: int, setpoint: float, final: float, out: 
         out["overshoot_pct"] = 0.0
         out["peak"] = setpoint + float(direction * (direction * curves.y[row]).max())
         why["t_peak"] = "undefined: the response does not pass its final value"
-    low, high = (curves.first_crossing(row, part * final - setpoint) for part in (0.1, 0.9))
+    low, high = (_first_reached(curves, row, part * final - setpoint, direction) for part in (0.1, 0.9))
     if low is not None and high is not None:
         out["t_rise"] = high - low
     else:
@@ -83,6 +84,12 @@ def _shape(curves: HermiteCurves, row: int, setpoint: float, final: float, out: 
         out["decay_ratio"] = float(height[1] / height[0])
     else:
         why["decay_ratio"] = "undefined: there are not two overshoots within the horizon"
+
+
+def _first_reached(curves: HermiteCurves, row: int, level: float, direction: float) -> float | None:
+    """When a response from rest reaches a level: at once where it jumps beyond."""
+    jumps = direction * (float(curves.y[row, 0]) - level) >= 0.0
+    return 0.0 if jumps else curves.first_crossing(row, level)
 
 
 def _disturbed(
@@ -133,6 +140,9 @@ def _judge(responses: Sequence[Response], setpoints: Sequence[float], stable: bo
         if final is not None and abs(setpoint - final) > 1e-9:
             for name in ("IAE", "ISE", "ITAE"):
                 why[name] = "grows with the horizon: an offset remains"
+        elif final is not None and out["t_settle"] is None:
+            for name in ("IAE", "ISE", "ITAE", "TV"):
+                why[name] = "up to the horizon: the response has not settled by then"
         out["TV"] = abs(float(response.u[0])) + variation[row]
         judged.append(StepMetrics(**out, reasons=why))
     return judged
@@ -210,4 +220,6 @@ def default_horizon(loop: FeedbackLoop) -> float:
         want = 10.0 / abs(P.gain) ** (1.0 / max(P.relative_degree, 1)) if P.gain else 10.0
     steps = np.array([1.0, 2.0, 3.0, 5.0, 8.0, 10.0])
     power = 10.0 ** np.floor(np.log10(want))
-    return float(f"{steps[np.searchsorted(steps, want / power - 1e-9)] * power:.6g}")
+    horizon = float(f"{steps[np.searchsorted(steps, want / power - 1e-9)] * power:.6g}")
+    # A dead time much shorter than the horizon is not simulated.
+    return min(horizon, 0.5 * P.theta / SHORTEST_DEAD_TIME) if P.theta else horizon

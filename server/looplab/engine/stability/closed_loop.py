@@ -24,6 +24,8 @@ ComplexArray = npt.NDArray[np.complex128]
 
 # A pole counts as on the imaginary axis when its real part is below this fraction of its size.
 AXIS_TOLERANCE = 1e-9
+# Equal poles may be apart by this fraction of their size.
+SCATTERED = 1e-6
 
 
 @dataclass(frozen=True)
@@ -139,12 +141,28 @@ def _pole_text(p: complex) -> str:
     return f"{_number(p.real)} ± {_number(abs(p.imag))}j"
 
 
+def _unscattered(poles: list[complex]) -> list[complex]:
+    """Poles near the axis that lie together, on the real part of their mean.
+
+    Rounding scatters m equal poles around their mean by about eps^(1/m), but hardly moves the mean.
+    """
+    near = [p for p in poles if abs(p.real) <= SCATTERED * abs(p)]
+    if len(near) < 2:
+        return poles
+    out = list(poles)
+    for i, p in enumerate(poles):
+        if abs(p.real) <= SCATTERED * abs(p):
+            together = [q.real for q in near if abs(q - p) <= SCATTERED * abs(p)]
+            out[i] = complex(sum(together) / len(together), p.imag)
+    return out
+
+
 def verdict_from_poles(poles: ComplexArray, noun: str = "closed-loop pole", whole: str = "loop") -> Verdict:
     """The verdict where all poles are known; ``noun`` and ``whole`` say of what."""
     if not poles.size:
         return Verdict("stable", True, f"the {whole} has no dynamics: it answers at once", 0)
     # Eigenvalues of a cluster of m equal poles scatter by about eps^(1/m); a pole at the origin needs a scale.
-    every = poles.tolist()
+    every = _unscattered(poles.tolist())
     least = max(1e-3 * max(map(abs, every)), 1e-300)
     by_size = [(p, AXIS_TOLERANCE * max(abs(p), least)) for p in every]
     right = [p for p, near in by_size if p.real > near]
