@@ -67,21 +67,22 @@ def _distances(
     others: TransferFunction, r: complex, m: int, sign: float, gains: FloatArray, reach: float
 ) -> ComplexArray:
     """s - r of the m branches for each gain, shape (g, m); NaN where they are not all below ``reach``."""
-    z, p = r - others.zeros, r - others.poles
-    d = np.zeros((gains.size, m), dtype=complex)
+    z, p = (r - others.zeros)[:, None, None], (r - others.poles)[:, None, None]
+    out = np.full((gains.size, m), np.nan, dtype=complex)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         at_root = np.log(z).sum() - np.log(p).sum() + np.log(others.gain + 0j) - others.theta * r
         # Each of the m-th roots belongs to one branch.
         start = sign * (np.log(gains)[:, None] + 1j * np.pi + at_root) + 2j * np.pi * np.arange(m)
-        for step in range(STEPS):
-            # Relative to the value at the root, so that no logarithm jumps across its cut.
-            moved = np.log1p(d[..., None] / z).sum(axis=-1) - np.log1p(d[..., None] / p).sum(axis=-1)
+        d = np.exp(start / m)
+        near = (np.abs(d) < reach).all(axis=1).nonzero()[0]
+        if not near.size:
+            return out
+        start, d, to_zeros, to_poles = start[near], d[near], 1.0 / z, 1.0 / p
+        for _ in range(STEPS - 1):
+            # Relative to the value at the root; so near it that no logarithm jumps across its cut.
+            moved = np.log((1.0 + d * to_zeros).prod(axis=0) / (1.0 + d * to_poles).prod(axis=0))
             d = np.exp((start + sign * (moved - others.theta * d)) / m)
-            if step == 0:
-                near = (np.abs(d) < reach).all(axis=1)
-                if not near.any():
-                    return np.full(d.shape, np.nan, dtype=complex)
-            d[~near] = 0.0
     if np.imag(r) == 0.0:
         d = np.where(np.abs(d.imag) < 1e-9 * np.abs(d), d.real, d)
-    return np.where(near[:, None], d, np.nan)
+    out[near] = d
+    return out
