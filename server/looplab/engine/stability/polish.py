@@ -1,4 +1,4 @@
-"""Newton steps that bring approximate closed-loop poles onto the exact characteristic equation."""
+"""Halley's and Newton's steps that bring approximate closed-loop poles onto the exact characteristic equation."""
 
 from __future__ import annotations
 
@@ -16,38 +16,42 @@ ComplexArray = npt.NDArray[np.complex128]
 
 # What one more step would leave of ln(-K L) is rounding.
 NEGLIGIBLE = 1e-15
-# The miss that a guess is taken to come from: a first miss below 3e-9 is then the last.
-AS_IF_BEFORE = 5e-6
+# If fewer than one in so many still move, those alone go on.
+FEW = 4
 # After a step this small, relative to the root, the next one would be rounding.
 FINAL = 1e-12
 EPSILON = float(np.finfo(float).eps)
 
 
-def _log_and_slope(L: TransferFunction, s: ComplexArray, factor: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-    """ln(factor prod(s - z)/prod(s - p) exp(-theta s)), imaginary part within half a turn, and its derivative."""
+def _log_and_rates(
+    L: TransferFunction, s: ComplexArray, factor: FloatArray
+) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """ln(factor prod(s - z)/prod(s - p) exp(-theta s)), imaginary part within half a turn, and two derivatives."""
+    zeros, poles = L.zeros.size, L.order
     # Roots on the first axis: sums and products along a short last one are slow.
     away = s - np.concatenate([L.zeros, L.poles]).reshape(-1, *(1,) * s.ndim)
-    to_zeros, to_poles = away[: L.zeros.size], away[L.zeros.size :]
+    to_zeros, to_poles = away[:zeros], away[zeros:]
     log = np.log(factor * (to_zeros[:SMALL_ORDER].prod(axis=0) / to_poles[:SMALL_ORDER].prod(axis=0)))
     # Products of more factors might leave double precision.
-    for first in range(SMALL_ORDER, max(L.zeros.size, L.order), SMALL_ORDER):
+    for first in range(SMALL_ORDER, max(zeros, poles), SMALL_ORDER):
         some = slice(first, first + SMALL_ORDER)
         log += np.log(to_zeros[some].prod(axis=0) / to_poles[some].prod(axis=0))
     if L.theta:
         log -= L.theta * s
-    if L.theta or max(L.zeros.size, L.order) > SMALL_ORDER:
+    if L.theta or max(zeros, poles) > SMALL_ORDER:
         log.imag -= 2.0 * np.pi * np.round(log.imag / (2.0 * np.pi))
     np.reciprocal(away, out=away)
     slope = to_zeros.sum(axis=0) - to_poles.sum(axis=0)
     if L.theta:
         slope -= L.theta
-    return log, slope
+    np.square(away, out=away)
+    return log, slope, to_poles.sum(axis=0) - to_zeros.sum(axis=0)
 
 
 def polish_closed_loop_poles(
     L: TransferFunction, guess: ComplexArray, gain: npt.ArrayLike = 1.0, steps: int = 4
 ) -> tuple[ComplexArray, npt.NDArray[np.bool_]]:
-    r"""Newton on :math:`\ln(-K L(s)) = 0` with the factored L, dead time exact.
+    r"""Halley's method on :math:`\ln(-K L(s)) = 0` with the factored L, dead time exact.
 
     Parameters
     ----------
@@ -57,12 +61,12 @@ def polish_closed_loop_poles(
     gain : array_like
         K, broadcast against guess.
     steps : int
-        Newton steps at most.
+        At most.
 
     Returns
     -------
     roots : ndarray, shape of guess
-        Not a number where Newton's steps lose themselves.
+        Not a number where the steps lead nowhere.
     good : ndarray of bool
         True where the residual \|1 + K L\| ended below 1e-8 (or what rounding of s allows) near the guess.
     """
@@ -72,26 +76,38 @@ def polish_closed_loop_poles(
 def polish_with_slope(
     L: TransferFunction, guess: ComplexArray, gain: npt.ArrayLike = 1.0, steps: int = 4
 ) -> tuple[ComplexArray, npt.NDArray[np.bool_], ComplexArray]:
-    """The same, and L'/L before the last step, which is too short to matter where the root is good."""
+    """The same, and L'/L before the last step, which is too short to matter where the root is good.
+
+    References
+    ----------
+    .. [1] J. F. Traub, Iterative Methods for the Solution of Equations, Prentice-Hall 1964, sec. 5.2 (Halley).
+    """
     s, near = guess.astype(complex), 0.3 * np.abs(guess) + 1e-6
-    size: npt.ArrayLike = AS_IF_BEFORE
+    gain = np.asarray(gain, dtype=float)
     with np.errstate(all="ignore"):
-        factor = -L.gain * np.asarray(gain, dtype=float)
         for left in range(steps, -1, -1):
-            miss, slope = _log_and_slope(L, s, factor)
-            last, size = size, np.abs(miss)
+            miss, slope, bend = _log_and_rates(L, s, -L.gain * gain)
+            size = np.abs(miss)
             if not left:
                 # Next to an open-loop pole L cannot be known better than the rounding of s allows.
                 knowable = 8.0 * EPSILON * np.abs(s * slope)
                 good = size < np.maximum(1e-8, np.minimum(knowable, 0.1))
                 break
             step = miss / slope
+            curved = 0.5 * step * bend / slope
+            step /= 1.0 - curved
             s = s - step
-            # Newton's misses shrink as their squares; steps of a few roundings of s lead nowhere.
-            good = (size**3 <= NEGLIGIBLE * np.square(last)) | (size <= FINAL) | (np.abs(step) <= 4.0 * EPSILON * np.abs(s))
+            # A step leaves about the cube of the miss, more where poles meet; steps of a few roundings lead nowhere.
+            left_over = size * (size + np.abs(curved)) ** 2
+            good = (left_over <= NEGLIGIBLE) | (np.abs(step) <= 4.0 * EPSILON * np.abs(s)) & (size < 0.1)
             # A root that has left the neighbourhood of its guess is none of ours.
-            if good.all() or not (~good & (np.abs(s - guess) <= near)).any():
-                good &= size < 0.1
+            moving = ~good & (np.abs(s - guess) <= near)
+            many = np.count_nonzero(moving)
+            if not many:
+                break
+            if FEW * many < s.size:
+                rest = np.broadcast_to(gain, s.shape)[moving]
+                s[moving], good[moving], slope[moving] = polish_with_slope(L, s[moving], rest, left - 1)
                 break
         good &= np.abs(s - guess) <= near
     return s, good, slope
