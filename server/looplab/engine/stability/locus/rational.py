@@ -37,6 +37,8 @@ FAR = 3.0
 MOST_PARTS = 24
 # A pole that moves this far [sizes of the picture] per ln K is at a meeting point.
 AT_MEETING = 1e4
+# Two numbers this close, relative to them, cannot be told apart.
+ROUNDINGS = 4e-15
 # Gains this close, relative to them, are one.
 SAME = 1e-12
 
@@ -214,7 +216,11 @@ def _smooth(L: TransferFunction, found: _Sampled, size: float) -> _Sampled:
         poles, good, slope = polish_with_slope(L, guess, gains[:, None], steps=6)
         with np.errstate(all="ignore"):
             more = _Sampled(gains, poles, -1.0 / slope, np.zeros(gains.size, dtype=bool))
-        lost = ~(good & (np.abs(poles - guess) < 0.2 * _nearest_neighbour(guess))).all(axis=1)
+        if not good.all():
+            # A pole that does not move from one end of the interval to the other is there: on a root of L, mostly.
+            still = ~good & (np.abs(cubics.end[at] - cubics.start[at]) <= ROUNDINGS * np.abs(guess))
+            poles[still], more.rates[still], good[still] = guess[still], 0.0, True
+        lost = ~(good & (np.abs(poles - guess) < 0.4 * _nearest_neighbour(guess))).all(axis=1)
         if lost.any():
             again = _poles_at(L, gains[lost], ())
             more.poles[lost], more.rates[lost] = again.poles, again.rates
