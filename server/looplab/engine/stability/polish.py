@@ -98,8 +98,10 @@ def polish_with_slope(
             step /= 1.0 - curved
             s = s - step
             # A step leaves about the cube of the miss, more where poles meet; steps of a few roundings lead nowhere.
-            left_over = size * (size + np.abs(curved)) ** 2
-            good = (left_over <= NEGLIGIBLE) | (np.abs(step) <= 4.0 * EPSILON * np.abs(s)) & (size < 0.1)
+            good = size * np.square(size + np.abs(curved)) <= NEGLIGIBLE
+            if good.all():
+                break
+            good |= (np.abs(step) <= 4.0 * EPSILON * np.abs(s)) & (size < 0.1)
             # A root that has left the neighbourhood of its guess is none of ours.
             moving = ~good & (np.abs(s - guess) <= near)
             many = np.count_nonzero(moving)

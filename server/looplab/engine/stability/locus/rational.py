@@ -273,45 +273,42 @@ class _Cubics:
         distance = np.minimum(np.abs(self.start), np.abs(self.end))
         # Farther out the picture is looked at from farther away.
         scale = np.maximum(distance, size)
-        length = np.abs(chord) / scale
+        length, (leaves, arrives) = np.abs(chord) / scale, np.abs(self.slopes)
+        longest = np.maximum(length, np.maximum(leaves, arrives) / scale)
         turns = self.directions * chord.conj()
-        turn = np.abs(np.arctan2(turns.imag, turns.real)).sum(axis=0)
-        longest = np.maximum(length, np.abs(self.slopes).max(axis=0) / scale)
-        parts = np.maximum(
-            np.where(length > LONGEST_STEP, longest, 0.0) / AIMED_STEP,
-            np.where((length > TOO_SHORT) & (turn > LARGEST_TURN), turn, 0.0) / AIMED_TURN,
-        )
-        parts[distance >= FAR * size] = 0.0
-        return np.clip(np.ceil(parts.max(axis=1)), 1, MOST_PARTS).astype(np.intp)
+        leaves, arrives = np.abs(np.arctan2(turns.imag, turns.real))
+        turn = leaves + arrives
+        bent = (length > TOO_SHORT) & (turn > LARGEST_TURN)
+        parts = np.maximum((length > LONGEST_STEP) * longest / AIMED_STEP, bent * turn / AIMED_TURN)
+        parts *= distance < FAR * size
+        return np.ceil(np.minimum(parts.max(axis=1), MOST_PARTS)).astype(np.intp)
 
 
 def _cubics(found: _Sampled, size: float) -> _Cubics:
     gains, poles, rates, meeting = found
-    repeated = (poles[0][:, None] == poles[0]).sum(axis=0)
     root = ~(np.abs(rates) < AT_MEETING * size)
-    root[0] = repeated == repeated.max()
-    low, high, start, end = gains[:-1], gains[1:], poles[:-1], poles[1:]
+    repeated = np.count_nonzero(poles[0][:, None] == poles[0], axis=0)
+    multiplicity = int(repeated.max())
+    root[0] = repeated == multiplicity
     rates = np.where(root, 0.0, rates)
-    directions = np.array([rates[:-1], rates[1:]])
-    rise = np.zeros((low.size, 1))
-    rise[1:, 0] = np.log(high[1:] / low[1:])
-    slopes = rise * directions
-    power, back = 2.0 * (meeting[1:] | meeting[:-1]), meeting[1:] & ~meeting[:-1]
-    power[0], back[0] = repeated.max(), False
-    lost = root.any(axis=1)
-    at = ((power > 0.0) | lost[1:] | lost[:-1]).nonzero()[0]
+    low, high, start, end = gains[:-1], gains[1:], poles[:-1], poles[1:]
+    power, back = np.zeros(low.size), np.zeros(low.size, dtype=bool)
     # d ln K/dx at both ends; at the end where the power law begins it is 0.
-    bent, other = power[at] > 0.0, back[at]
-    widening = power[at] * (high[at] - low[at])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        begins = np.where(bent, np.where(other, widening / low[at], 0.0), rise[at, 0])[:, None]
-        ends = np.where(bent, np.where(other, 0.0, widening / high[at]), rise[at, 0])[:, None]
+    begins = np.zeros((low.size, 1))
+    begins[1:, 0] = np.log(high[1:] / low[1:])
+    ends = begins.copy()
+    power[0], ends[0] = multiplicity, multiplicity
+    for i in meeting.nonzero()[0].tolist():
+        if i < low.size:
+            power[i], back[i] = 2.0, False
+            begins[i], ends[i] = 0.0, 2.0 * (1.0 - low[i] / high[i])
+        if i > 1 and not meeting[i - 1]:
+            power[i - 1], back[i - 1] = 2.0, True
+            begins[i - 1], ends[i - 1] = 2.0 * (high[i - 1] / low[i - 1] - 1.0), 0.0
     # A parabola says how fast a branch leaves a point that it leaves as a root of the gain does.
-    first, last, twice = root[at], root[at + 1], 2.0 * (end[at] - start[at])
-    backward = ends * rates[at + 1]
-    forward = np.where(first, twice - backward, begins * rates[at])
+    first, last, twice = root[:-1], root[1:], 2.0 * (end - start)
+    backward = ends * rates[1:]
+    forward = np.where(first, twice - backward, begins * rates[:-1])
     backward = np.where(last, twice - forward, backward)
-    slopes[0, at], slopes[1, at] = forward, backward
-    directions[0, at] = np.where(first, forward, rates[at])
-    directions[1, at] = np.where(last, backward, rates[at + 1])
-    return _Cubics(low, high, power, back, start, end, slopes, directions)
+    directions = np.array([np.where(first, forward, rates[:-1]), np.where(last, backward, rates[1:])])
+    return _Cubics(low, high, power, back, start, end, np.array([forward, backward]), directions)
