@@ -28,8 +28,7 @@ def _log_and_rates(
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
     """ln(factor prod(s - z)/prod(s - p) exp(-theta s)), imaginary part within half a turn, and two derivatives."""
     zeros, poles = L.zeros.size, L.order
-    # Roots on the first axis: sums and products along a short last one are slow.
-    away = s - np.concatenate([L.zeros, L.poles]).reshape(-1, *(1,) * s.ndim)
+    away = s - np.concatenate([L.zeros, L.poles])[:, None]
     to_zeros, to_poles = away[:zeros], away[zeros:]
     log = np.log(factor * (to_zeros[:SMALL_ORDER].prod(axis=0) / to_poles[:SMALL_ORDER].prod(axis=0)))
     # Products of more factors might leave double precision.
@@ -40,12 +39,14 @@ def _log_and_rates(
         log -= L.theta * s
     if L.theta or max(zeros, poles) > SMALL_ORDER:
         log.imag -= 2.0 * np.pi * np.round(log.imag / (2.0 * np.pi))
+    sense = np.ones(zeros + poles, dtype=complex)
+    sense[zeros:] = -1.0
     np.reciprocal(away, out=away)
-    slope = to_zeros.sum(axis=0) - to_poles.sum(axis=0)
+    slope = np.dot(sense, away)
     if L.theta:
         slope -= L.theta
     np.square(away, out=away)
-    return log, slope, to_poles.sum(axis=0) - to_zeros.sum(axis=0)
+    return log, slope, -np.dot(sense, away)
 
 
 def polish_closed_loop_poles(
@@ -82,11 +83,12 @@ def polish_with_slope(
     ----------
     .. [1] J. F. Traub, Iterative Methods for the Solution of Equations, Prentice-Hall 1964, sec. 5.2 (Halley).
     """
-    s, near = guess.astype(complex), 0.3 * np.abs(guess) + 1e-6
-    gain = np.asarray(gain, dtype=float)
+    start = guess.ravel()
+    s, factor = start.astype(complex), np.full(guess.shape, -L.gain * np.asarray(gain, dtype=float)).ravel()
+    near = 0.3 * np.abs(start) + 1e-6
     with np.errstate(all="ignore"):
         for left in range(steps, -1, -1):
-            miss, slope, bend = _log_and_rates(L, s, -L.gain * gain)
+            miss, slope, bend = _log_and_rates(L, s, factor)
             size = np.abs(miss)
             if not left:
                 # Next to an open-loop pole L cannot be known better than the rounding of s allows.
@@ -99,20 +101,20 @@ def polish_with_slope(
             s = s - step
             # A step leaves about the cube of the miss, more where poles meet; steps of a few roundings lead nowhere.
             good = size * np.square(size + np.abs(curved)) <= NEGLIGIBLE
-            if good.all():
+            if np.count_nonzero(good) == good.size:
                 break
             good |= (np.abs(step) <= 4.0 * EPSILON * np.abs(s)) & (size < 0.1)
             # A root that has left the neighbourhood of its guess is none of ours.
-            moving = ~good & (np.abs(s - guess) <= near)
+            moving = ~good & (np.abs(s - start) <= near)
             many = np.count_nonzero(moving)
             if not many:
                 break
             if FEW * many < s.size:
-                rest = np.broadcast_to(gain, s.shape)[moving]
+                rest = factor[moving] / -L.gain
                 s[moving], good[moving], slope[moving] = polish_with_slope(L, s[moving], rest, left - 1)
                 break
-        good &= np.abs(s - guess) <= near
-    return s, good, slope
+        good &= np.abs(s - start) <= near
+    return s.reshape(guess.shape), good.reshape(guess.shape), slope.reshape(guess.shape)
 
 
 def polish_few(L: TransferFunction, guess: ComplexArray, steps: int = 2) -> ComplexArray:

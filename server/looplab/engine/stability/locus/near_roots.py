@@ -62,7 +62,7 @@ def poles_near_roots(L: TransferFunction, gains: FloatArray) -> list[NearRoot]:
     reach = NEAR * np.minimum(gap, 1.0 / L.theta if L.theta else np.inf) / L.order
     sign = sense[there.argmax(axis=1)]
     with np.errstate(divide="ignore"):
-        # ln |K L_r(r)| says how near the poles are: nearest to a pole of L at the smallest gain, to a zero at the largest.
+        # ln |K L_r(r)| says how near the poles are: to a pole of L at the smallest gain, to a zero at the largest.
         level = np.where(sign > 0.0, np.log(gains.min()), np.log(gains.max())) + np.log(abs(L.gain))
         level -= np.log(np.where(there, 1.0, apart)) @ sense + L.theta * distinct.real
         near = sign * level < multiplicity * np.log(reach)
