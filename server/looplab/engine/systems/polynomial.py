@@ -72,7 +72,7 @@ def roots(coefficients: FloatArray) -> ComplexArray:
             scaled = monic * scale ** -np.arange(p.size)
         if not np.isfinite(scaled).all():
             raise InvalidInput("the coefficients are too far apart", hint="choose other units")
-        found = pair_conjugates(eigenvalues(companion(scaled)) * scale)
+        found = pair_conjugates(eigenvalues(_companion(scaled)) * scale)
     return np.concatenate([np.zeros(origin, dtype=complex), found])
 
 
@@ -94,7 +94,7 @@ def eigenvalues(matrix: FloatArray) -> ComplexArray:
     return np.asarray(re + 1j * im)
 
 
-def companion(monic: FloatArray) -> FloatArray:
+def _companion(monic: FloatArray) -> FloatArray:
     """Companion matrix of a polynomial with leading coefficient 1, highest power first."""
     n = monic.size - 1
     out = np.zeros((n, n))

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from looplab.engine.frequency.crossings import crossings
 from looplab.engine.frequency.scalar import TINY, scalar_loop
 from looplab.engine.systems.hidden_modes import split_hidden_modes
-from looplab.engine.systems.polynomial import companion, eigenvalues
+from looplab.engine.systems.polynomial import eigenvalues
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
@@ -194,10 +194,12 @@ def breakaway_points(L: TransferFunction) -> tuple[Breakaway, ...]:
     if not L.order:
         return ()
     weights = _weights(L)
+    sizes = [abs(r) for r, _ in weights if r]
+    unit = exp(sum(map(log, sizes)) / len(sizes)) if sizes else 1.0
     loop = scalar_loop(L.unit)
     out: list[Breakaway] = []
     for start in _turning_points(weights, L.theta):
-        s = _newton_on_turning(start, weights, L.theta)
+        s = _newton_on_turning(start, weights, L.theta, 1e-7 * unit)
         if s is None:
             continue
         value, _ = loop.value_and_rate(s, abs(L.gain))
@@ -206,7 +208,7 @@ def breakaway_points(L: TransferFunction) -> tuple[Breakaway, ...]:
             continue
         if abs(s.imag) < 1e-9 * abs(s):
             s = complex(s.real)
-        if all(abs(b.s - s) > 1e-6 * max(1.0, abs(s)) for b in out):
+        if all(abs(b.s - s) > 1e-6 * max(0.1 * unit, abs(s)) for b in out):
             out += [Breakaway(at, K.real) for at in ((s, s.conjugate()) if s.imag else (s,))]
     return tuple(sorted(out, key=attrgetter("K")))
 
@@ -221,28 +223,43 @@ def _weights(L: TransferFunction) -> Weights:
 
 
 def _turning_points(weights: Weights, theta: float) -> list[complex]:
-    """Approximate zeros of sum w/(s - r) - theta, upper half: multiplied out with each root once, so that none is left
-    multiple.
+    """Approximate zeros of sum w/(s - r) - theta = c (s - A)^-1 b - theta, upper half, some that are none among them.
+
+    They are eigenvalues: of A + b c/theta; without dead time of A - b c A^(k+1)/(c A^k b) with the first k for which
+    that can be divided by, since the first derivatives of the output of A, b, c are then kept at zero. A polynomial of
+    the same zeros has none of their digits left from order 30 on.
     """
-    # In units of a typical root: expanded in other units the coefficients spread over hundreds of decades.
-    logs = [log(abs(r)) for r, _ in weights if r]
-    unit = exp(sum(logs) / len(logs)) if logs else 1.0
-    # prod(s - r) and sum w prod(s - other r), highest power first, grown by one factor after the other.
-    product, turning = [1.0 + 0j], [0j]
-    for root, w in weights:
-        r = root / unit
-        turning = [a - r * b + w * c for a, b, c in zip([*turning, 0j], [0j, *turning], [0j, *product], strict=True)]
-        product = [a - r * b for a, b in zip([*product, 0j], [0j, *product], strict=True)]
-    coefficients = [(a - theta * unit * b).real for a, b in zip(turning, product, strict=True)]
-    first = next((i for i, c in enumerate(coefficients) if c), len(coefficients) - 1)
-    if first == len(coefficients) - 1:
-        return []
-    monic = np.array(coefficients[first:]) / coefficients[first]
-    return [unit * s for s in eigenvalues(companion(monic)).tolist() if s.imag >= 0.0]
+    upper = [(r, w) for r, w in weights if r.imag >= 0.0]
+    A = np.zeros((len(weights), len(weights)))
+    b, c = np.zeros(len(weights)), np.zeros(len(weights))
+    at = 0
+    for r, w in upper:
+        A[at, at], b[at], c[at] = r.real, 1.0, w
+        if r.imag:
+            # w/(s - r) and its conjugate as one block of two real states.
+            A[at, at + 1], A[at + 1, at], A[at + 1, at + 1], c[at] = r.imag, -r.imag, r.real, 2.0 * w
+            at += 1
+        at += 1
+    row, divisor = c, -theta
+    if not theta:
+        # Hardly different from zero where the terms cancel.
+        divisor, size, large = 0.0, np.abs(c), np.abs(A)
+        for _ in weights:
+            divisor = float(row @ b)
+            row = row @ A
+            if abs(divisor) > 1e-12 * float(size @ b):
+                break
+            size = size @ large
+        else:
+            return []
+    return [s for s in eigenvalues(A - np.outer(b, row / divisor)).tolist() if s.imag >= 0.0]
 
 
-def _newton_on_turning(s: complex, weights: Weights, theta: float) -> complex | None:
-    """Newton on (L'/L) prod(s - r), which has no poles, in factored form; None where it finds no zero of L'/L."""
+def _newton_on_turning(s: complex, weights: Weights, theta: float, short: float) -> complex | None:
+    """Newton on (L'/L) prod(s - r), which has no poles, in factored form; None where it finds no zero of L'/L.
+
+    Steps longer than a tenth of s are not taken unless they are ``short``.
+    """
     for _ in range(TURNING_STEPS):
         f, size, slope, inverses = complex(-theta), theta, 0j, 0j
         for r, w in weights:
@@ -253,7 +270,7 @@ def _newton_on_turning(s: complex, weights: Weights, theta: float) -> complex | 
             slope += term * inverse
             inverses += inverse
         step = f / ((f * inverses - slope) or TINY)
-        if not abs(step) <= 0.1 * abs(s) + 1e-7:
+        if not abs(step) <= 0.1 * abs(s) + short:
             break
         s -= step
         if abs(step) <= 1e-11 * abs(s):
