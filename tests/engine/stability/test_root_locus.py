@@ -237,7 +237,10 @@ def test_random_breakaways_are_double_roots(L: TransferFunction) -> None:
         assert abs(np.polyval(dp, b.s)) <= 1e-6 * np.polyval(np.abs(dp), abs(b.s))
 
 
-@pytest.mark.parametrize("L", [TransferFunction((), (), 2.0), TransferFunction((), (-1,), 0.0)])
+@pytest.mark.parametrize(
+    "L",
+    [TransferFunction((), (), 2.0), TransferFunction((), (-1,), 0.0), TransferFunction((), [-1e7] * 50)],
+)
 def test_what_has_no_locus(L: TransferFunction) -> None:
     with pytest.raises(InvalidInput) as caught:
         root_locus(L)

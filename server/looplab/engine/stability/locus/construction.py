@@ -22,6 +22,8 @@ ComplexArray = npt.NDArray[np.complex128]
 # Each root once, with its multiplicity.
 Weights = list[tuple[complex, float]]
 TURNING_STEPS = 6
+# Of a gain that is a number, and so is a hundred times as much.
+LARGEST_LOG = 690.0
 # Half height of the picture in units of 1/theta.
 WIDEST_IN_DEAD_TIMES = 10.0
 Window = tuple[tuple[float, float], tuple[float, float]]
@@ -281,10 +283,11 @@ def _newton_on_turning(s: complex, weights: Weights, theta: float, short: float)
 def axis_crossings(L: TransferFunction) -> tuple[AxisCrossing, ...]:
     """Gains at which a branch crosses the imaginary axis: the phase crossovers, with K = 1/|L|; and s = 0."""
     found = crossings(L)
+    # What lies on a root of L, or crosses at a gain beyond double precision, is left out.
     out = [
-        AxisCrossing(float(w), float(np.exp(-m)))
-        for w, m in zip(found.phase_omega, found.phase_log_magnitude, strict=True)
-        if np.isfinite(m)
+        AxisCrossing(w, exp(-m))
+        for w, m in zip(found.phase_omega.tolist(), found.phase_log_magnitude.tolist(), strict=True)
+        if abs(m) < LARGEST_LOG
     ]
     if L.origin_order == 0 and L.origin_gain < 0:
         out.append(AxisCrossing(0.0, -1.0 / L.origin_gain))

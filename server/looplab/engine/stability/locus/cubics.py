@@ -120,6 +120,19 @@ class Cubics:
 
 
 def cubics_between(found: Sampled, size: float) -> Cubics:
+    """The cubics between neighbouring gains, from the poles and rates there.
+
+    Parameters
+    ----------
+    found : Sampled
+        One branch a column; the first gain is 0.
+    size : float
+        Size of the picture [rad/time]: a rate far beyond it is that of a meeting point.
+
+    Returns
+    -------
+    Cubics
+    """
     gains, poles, rates, meeting = found
     root = ~(np.abs(rates) < AT_MEETING * size)
     repeated = np.count_nonzero(poles[0][:, None] == poles[0], axis=0)
