@@ -202,8 +202,8 @@ def breakaway_points(L: TransferFunction) -> tuple[Breakaway, ...]:
     out: list[Breakaway] = []
     for start in _turning_points(weights, L.theta):
         s = _newton_on_turning(start, weights, L.theta, 1e-7 * unit)
-        if s is None:
-            continue
+        if s is None or -L.theta * s.real > LARGEST_LOG:
+            continue  # not a meeting point, or one at a gain below double precision
         value, _ = loop.value_and_rate(s, abs(L.gain))
         K = -1.0 / value if value else complex(inf)
         if not (isfinite(K.real) and K.real > 0.0 and abs(K.imag) < 1e-7 * K.real):
