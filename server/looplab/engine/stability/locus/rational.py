@@ -75,7 +75,7 @@ def _poles_at(L: TransferFunction, gains: FloatArray, breaks: tuple[Breakaway, .
     effective = gains / (1.0 + gains * ss.D)
     found = np.linalg.eigvals(ss.A - effective[:, None, None] * (ss.B[:, None] * ss.C)).astype(complex)
     out, good, slope = polish_with_slope(L, found, gains[:, None], steps=2)
-    # Near a break-away Newton may pull two roots into one: keep the eigenvalues there.
+    # Near a break-away Halley's method may pull two roots into one: keep the eigenvalues there.
     good &= np.abs(out - found) < 0.2 * _nearest_neighbour(found)
     if np.count_nonzero(good) < good.size:
         out = np.where(good, out, found)
@@ -97,7 +97,7 @@ def _poles_at(L: TransferFunction, gains: FloatArray, breaks: tuple[Breakaway, .
 
 
 def _with_poles_near_roots(L: TransferFunction, gains: FloatArray, poles: ComplexArray) -> ComplexArray:
-    """Next to a root of L eigenvalues are not sharp enough for Newton to begin: those are replaced."""
+    """Next to a root of L eigenvalues are not sharp enough for Halley's method to begin: those are replaced."""
     out = poles.copy()
     for near in poles_near_roots(L, gains):
         m = near.poles.shape[1]
@@ -185,11 +185,12 @@ def _smooth(L: TransferFunction, found: Sampled, size: float) -> Sampled:
             still = ~good & (np.abs(cubics.end[at] - cubics.start[at]) <= ROUNDINGS * np.abs(guess))
             poles[still], more.rates[still], good[still] = guess[still], 0.0, True
         good &= np.abs(poles - guess) < 0.4 * _nearest_neighbour(guess)
-        lost = np.zeros(0) if np.count_nonzero(good) == good.size else ~good.all(axis=1)
-        if lost.size:
-            again = _poles_at(L, gains[lost], ())
-            more.poles[lost], more.rates[lost] = again.poles, again.rates
+        if np.count_nonzero(good) == good.size:
+            found = found.merged(more)
+            continue
+        lost = ~good.all(axis=1)
+        again = _poles_at(L, gains[lost], ())
+        more.poles[lost], more.rates[lost] = again.poles, again.rates
         found = found.merged(more)
-        if lost.size:
-            found = found.joined(_links(found)[0])
+        found = found.joined(_links(found)[0])
     return found
