@@ -37,6 +37,10 @@ class Sampled(NamedTuple):
     rates: ComplexArray
     meeting: BoolArray
 
+    def followed_by(self, more: Sampled) -> Sampled:
+        """Both, where the other begins at a larger gain than this ends at."""
+        return Sampled(*(np.concatenate(pair) for pair in zip(self, more, strict=True)))
+
     def merged(self, more: Sampled) -> Sampled:
         """Both, by increasing gain."""
         order = np.concatenate([self.gains, more.gains]).argsort(kind="stable")
@@ -46,7 +50,7 @@ class Sampled(NamedTuple):
         """One branch a column, given which pole of the next gain each pole becomes."""
         order = [list(range(self.poles.shape[1]))]
         for step in links.tolist():
-            order.append([step[j] for j in order[-1]])
+            order.append(list(map(step.__getitem__, order[-1])))
         at = np.arange(len(order))[:, None], np.array(order)
         return self._replace(poles=self.poles[at], rates=self.rates[at])
 

@@ -117,7 +117,7 @@ def _nearest_neighbour(points: ComplexArray) -> FloatArray:
 def _joined_eigenvalues(L: TransferFunction, gains: FloatArray, breaks: tuple[Breakaway, ...]) -> Sampled:
     """Poles at the gains and at some between, so that it is sure which becomes which; one branch a column."""
     begin = Sampled(np.zeros(1), L.poles[None, :], np.zeros((1, L.order), dtype=complex), np.zeros(1, dtype=bool))
-    found = begin.merged(_poles_at(L, gains[gains > 0.0], breaks))
+    found = begin.followed_by(_poles_at(L, gains[gains > 0.0], breaks))
     links, sure = _links(found)
     for _ in range(2):
         if sure.all():
