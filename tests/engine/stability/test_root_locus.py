@@ -175,6 +175,32 @@ def test_repeated_roots_are_no_breakaways(m: int, n: int, a: float, b: float) ->
     )
 
 
+@pytest.mark.parametrize("n", [9, 30, 50])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_between_many_real_poles_there_is_a_breakaway_each(n: int, sign: float) -> None:
+    """L = +-1/((s+1)(s+2)...(s+n)): by Rolle one turning point in each gap, on the locus in every other."""
+    breaks = breakaway_points(TransferFunction((), -np.arange(1.0, n + 1), sign))
+    gaps = [k for k in range(1, n) if (k % 2 == 1) == (sign > 0)]
+    assert sorted(int(-b.s.real) for b in breaks) == gaps
+    for b in breaks:
+        away = 1 / (b.s + np.arange(1, n + 1))
+        assert b.s.imag == 0
+        assert abs(away.sum()) <= 1e-11 * np.abs(away).sum()
+        assert np.log(b.K) == pytest.approx(-np.log(np.abs(away)).sum(), abs=1e-11)
+
+
+@pytest.mark.parametrize("rate", [1e-9, 1e6])
+def test_breakaways_in_any_time_unit(rate: float) -> None:
+    """(s+3)/(s(s+1)) meets at s = -3 +- sqrt(6), K = 5 +- sqrt(24)."""
+    L = TransferFunction([-3 * rate], [0, -rate])
+    found = [(b.s / rate, b.K / rate) for b in breakaway_points(L)]
+    x = 6**0.5
+    assert found == [
+        (pytest.approx(-3 + x, rel=1e-12), pytest.approx(5 - 2 * x, rel=1e-12)),
+        (pytest.approx(-3 - x, rel=1e-12), pytest.approx(5 + 2 * x, rel=1e-12)),
+    ]
+
+
 @pytest.mark.parametrize(
     ("text", "crossings"),
     [
@@ -211,7 +237,10 @@ def test_random_breakaways_are_double_roots(L: TransferFunction) -> None:
         assert abs(np.polyval(dp, b.s)) <= 1e-6 * np.polyval(np.abs(dp), abs(b.s))
 
 
-@pytest.mark.parametrize("L", [TransferFunction((), (), 2.0), TransferFunction((), (-1,), 0.0)])
+@pytest.mark.parametrize(
+    "L",
+    [TransferFunction((), (), 2.0), TransferFunction((), (-1,), 0.0), TransferFunction((), [-1e7] * 50)],
+)
 def test_what_has_no_locus(L: TransferFunction) -> None:
     with pytest.raises(InvalidInput) as caught:
         root_locus(L)

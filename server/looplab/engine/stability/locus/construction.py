@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from cmath import phase
 from dataclasses import dataclass
 from itertools import pairwise
+from math import degrees, exp, inf, isfinite, log
+from operator import attrgetter
 
 import numpy as np
 import numpy.typing as npt
 
 from looplab.engine.frequency.crossings import crossings
+from looplab.engine.frequency.scalar import TINY, scalar_loop
 from looplab.engine.systems.hidden_modes import split_hidden_modes
-from looplab.engine.systems.polynomial import roots
+from looplab.engine.systems.polynomial import eigenvalues
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
+# Each root once, with its multiplicity.
+Weights = list[tuple[complex, float]]
+TURNING_STEPS = 6
+# Of a gain that is a number, and so is a hundred times as much.
+LARGEST_LOG = 690.0
 # Half height of the picture in units of 1/theta.
 WIDEST_IN_DEAD_TIMES = 10.0
 Window = tuple[tuple[float, float], tuple[float, float]]
@@ -95,7 +103,7 @@ def asymptotes(L: TransferFunction, top: float) -> Asymptotes:
     excess = L.relative_degree
     if excess <= 0:
         return Asymptotes(None, none, none)
-    centroid = float((L.poles.sum() - L.zeros.sum()).real / excess)
+    centroid = (sum(L.poles.tolist()) - sum(L.zeros.tolist())).real / excess
     return Asymptotes(centroid, (180.0 * turn + 360.0 * np.arange(excess)) / excess, none)
 
 
@@ -133,16 +141,15 @@ def arrival_angles(L: TransferFunction) -> tuple[Angle, ...]:
 
 
 def _angles(L: TransferFunction, at: ComplexArray, sign: float) -> tuple[Angle, ...]:
-    out = []
-    for r in dict.fromkeys(at[at.imag != 0].tolist()):
-        same = int(np.count_nonzero(at == r))
-        zeros, poles = L.zeros[L.zeros != r], L.poles[L.poles != r]
-        if zeros.size + poles.size + same < L.zeros.size + L.poles.size:
+    out: list[Angle] = []
+    every, zeros, poles = at.tolist(), L.zeros.tolist(), L.poles.tolist()
+    for r in dict.fromkeys(r for r in every if r.imag):
+        same = every.count(r)
+        if zeros.count(r) + poles.count(r) > same:
             continue  # a pole on a zero: the branch is a point
-        phase = np.angle(r - zeros).sum() - np.angle(r - poles).sum() - L.theta * r.imag
-        phase += 0.0 if L.gain > 0 else np.pi
-        total = sign * (180.0 + np.degrees(phase))
-        out += [Angle(complex(r), _wrapped((total + 360.0 * k) / same)) for k in range(same)]
+        turns = sum(phase(r - z) for z in zeros if z != r) - sum(phase(r - p) for p in poles if p != r)
+        total = sign * (180.0 + degrees(turns - L.theta * r.imag) + (0.0 if L.gain > 0 else 180.0))
+        out += [Angle(r, _wrapped((total + 360.0 * k) / same)) for k in range(same)]
     return tuple(out)
 
 
@@ -151,8 +158,8 @@ def real_axis_segments(L: TransferFunction) -> tuple[tuple[float | None, float |
 
     An end that is None is infinite.
     """
-    marks = np.sort(np.concatenate([L.poles[L.poles.imag == 0].real, L.zeros[L.zeros.imag == 0].real]))[::-1]
-    edges = [None, *marks.tolist(), None]
+    marks = sorted((r.real for r in (*L.poles.tolist(), *L.zeros.tolist()) if not r.imag), reverse=True)
+    edges = [None, *marks, None]
     out: list[tuple[float | None, float | None]] = []
     for i, (right, left) in enumerate(pairwise(edges)):
         odd = i % 2 == 1
@@ -188,63 +195,99 @@ def breakaway_points(L: TransferFunction) -> tuple[Breakaway, ...]:
     L, _ = split_hidden_modes(L)
     if not L.order:
         return ()
-    roots_, weights = _distinct_roots(L)
-    points = _turning_points(roots_, weights, L.theta)
-    with np.errstate(all="ignore"):
-        points = _newton_on_turning(points, roots_, weights, L.theta)
-        terms = weights / (points[:, None] - roots_)
-        turning = np.abs(terms.sum(axis=1) - L.theta) <= 1e-9 * (np.abs(terms).sum(axis=1) + L.theta)
-        gains = -1.0 / L(points)
-    found = turning & np.isfinite(gains) & (gains.real > 0) & (np.abs(gains.imag) < 1e-7 * np.abs(gains))
+    weights = _weights(L)
+    sizes = [abs(r) for r, _ in weights if r]
+    unit = exp(sum(map(log, sizes)) / len(sizes)) if sizes else 1.0
+    loop = scalar_loop(L.unit)
     out: list[Breakaway] = []
-    for s, K in zip(points[found].tolist(), gains[found].real.tolist(), strict=True):
-        if all(abs(b.s - s) > 1e-6 * max(1.0, abs(s)) for b in out):
-            out.append(Breakaway(complex(s.real, 0.0 if abs(s.imag) < 1e-9 * abs(s) else s.imag), K))
-    return tuple(sorted(out, key=lambda b: b.K))
+    for start in _turning_points(weights, L.theta):
+        s = _newton_on_turning(start, weights, L.theta, 1e-7 * unit)
+        if s is None or -L.theta * s.real > LARGEST_LOG:
+            continue  # not a meeting point, or one at a gain below double precision
+        value, _ = loop.value_and_rate(s, abs(L.gain))
+        K = -1.0 / value if value else complex(inf)
+        if not (isfinite(K.real) and K.real > 0.0 and abs(K.imag) < 1e-7 * K.real):
+            continue
+        if abs(s.imag) < 1e-9 * abs(s):
+            s = complex(s.real)
+        if all(abs(b.s - s) > 1e-6 * max(0.1 * unit, abs(s)) for b in out):
+            out += [Breakaway(at, K.real) for at in ((s, s.conjugate()) if s.imag else (s,))]
+    return tuple(sorted(out, key=attrgetter("K")))
 
 
-def _distinct_roots(L: TransferFunction) -> tuple[ComplexArray, FloatArray]:
+def _weights(L: TransferFunction) -> Weights:
     """The roots of L, each once, and their multiplicities: positive for zeros, negative for poles."""
-    weights = Counter(L.zeros.tolist())
-    weights.subtract(L.poles.tolist())
-    return np.array(list(weights), dtype=complex), np.array(list(weights.values()), dtype=float)
+    out: dict[complex, float] = {}
+    for roots, sign in ((L.zeros.tolist(), 1.0), (L.poles.tolist(), -1.0)):
+        for r in roots:
+            out[r] = out.get(r, 0.0) + sign
+    return list(out.items())
 
 
-def _turning_points(roots_: ComplexArray, weights: FloatArray, theta: float) -> ComplexArray:
-    """Approximate zeros of sum w/(s - r) - theta: multiplied out with each root once, so that none stays multiple."""
-    # In units of a typical root: expanded in other units the coefficients spread over hundreds of decades.
-    sizes = np.abs(roots_)
-    unit = float(np.exp(np.mean(np.log(sizes[sizes > 0])))) if (sizes > 0).any() else 1.0
-    # prod(s - r) and sum w prod(s - other r), highest power first, grown by one factor after the other.
-    product, turning = [1.0 + 0j], [0j]
-    for r, w in zip((roots_ / unit).tolist(), weights.tolist(), strict=True):
-        turning = [a - r * b + w * c for a, b, c in zip([*turning, 0j], [0j, *turning], [0j, *product], strict=True)]
-        product = [a - r * b for a, b in zip([*product, 0j], [0j, *product], strict=True)]
-    coefficients = np.array(turning) - theta * unit * np.array(product)
-    return unit * roots(coefficients.real)
+def _turning_points(weights: Weights, theta: float) -> list[complex]:
+    """Approximate zeros of sum w/(s - r) - theta = c (s - A)^-1 b - theta, upper half, some that are none among them.
+
+    They are eigenvalues: of A + b c/theta; without dead time of A - b c A^(k+1)/(c A^k b) with the first k for which
+    that can be divided by, since the first derivatives of the output of A, b, c are then kept at zero. A polynomial of
+    the same zeros has none of their digits left from order 30 on.
+    """
+    upper = [(r, w) for r, w in weights if r.imag >= 0.0]
+    A = np.zeros((len(weights), len(weights)))
+    b, c = np.zeros(len(weights)), np.zeros(len(weights))
+    at = 0
+    for r, w in upper:
+        A[at, at], b[at], c[at] = r.real, 1.0, w
+        if r.imag:
+            # w/(s - r) and its conjugate as one block of two real states.
+            A[at, at + 1], A[at + 1, at], A[at + 1, at + 1], c[at] = r.imag, -r.imag, r.real, 2.0 * w
+            at += 1
+        at += 1
+    row, divisor = c, -theta
+    if not theta:
+        # Hardly different from zero where the terms cancel.
+        divisor, size, large = 0.0, np.abs(c), np.abs(A)
+        for _ in weights:
+            divisor = float(row @ b)
+            row = row @ A
+            if abs(divisor) > 1e-12 * float(size @ b):
+                break
+            size = size @ large
+        else:
+            return []
+    return [s for s in eigenvalues(A - np.outer(b, row / divisor)).tolist() if s.imag >= 0.0]
 
 
-def _newton_on_turning(s: ComplexArray, roots_: ComplexArray, weights: FloatArray, theta: float) -> ComplexArray:
-    """Newton on (L'/L) prod(s - r), which has no poles, in factored form."""
-    for _ in range(6):
-        inverse = 1.0 / (s[:, None] - roots_)
-        f = inverse @ weights - theta
-        step = f / (f * inverse.sum(axis=1) - inverse**2 @ weights)
-        size = np.abs(step)
-        taken = size <= 0.1 * np.abs(s) + 1e-7
-        s = s - np.where(taken, step, 0.0)
-        if not (taken & (size > 1e-15 * np.abs(s))).any():
+def _newton_on_turning(s: complex, weights: Weights, theta: float, short: float) -> complex | None:
+    """Newton on (L'/L) prod(s - r), which has no poles, in factored form; None where it finds no zero of L'/L.
+
+    Steps longer than a tenth of s are not taken unless they are ``short``.
+    """
+    for _ in range(TURNING_STEPS):
+        f, size, slope, inverses = complex(-theta), theta, 0j, 0j
+        for r, w in weights:
+            inverse = 1.0 / ((s - r) or TINY)
+            term = w * inverse
+            f += term
+            size += abs(term)
+            slope += term * inverse
+            inverses += inverse
+        step = f / ((f * inverses - slope) or TINY)
+        if not abs(step) <= 0.1 * abs(s) + short:
             break
-    return s
+        s -= step
+        if abs(step) <= 1e-11 * abs(s):
+            break
+    return s if abs(f) <= 1e-9 * size else None
 
 
 def axis_crossings(L: TransferFunction) -> tuple[AxisCrossing, ...]:
     """Gains at which a branch crosses the imaginary axis: the phase crossovers, with K = 1/|L|; and s = 0."""
     found = crossings(L)
+    # What lies on a root of L, or crosses at a gain beyond double precision, is left out.
     out = [
-        AxisCrossing(float(w), float(np.exp(-m)))
-        for w, m in zip(found.phase_omega, found.phase_log_magnitude, strict=True)
-        if np.isfinite(m)
+        AxisCrossing(w, exp(-m))
+        for w, m in zip(found.phase_omega.tolist(), found.phase_log_magnitude.tolist(), strict=True)
+        if abs(m) < LARGEST_LOG
     ]
     if L.origin_order == 0 and L.origin_gain < 0:
         out.append(AxisCrossing(0.0, -1.0 / L.origin_gain))
@@ -258,23 +301,24 @@ def window(
 
     A root much faster than the rest (a filter pole) is left outside.
     """
-    every = np.concatenate([L.poles, L.zeros])
-    size = np.sort(np.abs(every[every != 0]))
-    slow = float(size[-1]) if size.size else 1.0
-    for small, large in pairwise(size):
-        if large > 6.0 * small and np.count_nonzero(np.abs(every) <= small) >= 2:
-            slow = float(small)
+    every = [*L.poles.tolist(), *L.zeros.tolist()]
+    sizes = sorted(abs(r) for r in every)
+    slow = sizes[-1] if sizes and sizes[-1] else 1.0
+    for i, (small, large) in enumerate(pairwise(sizes), 1):
+        if large > 6.0 * small > 0.0 and i >= 2:
+            slow = small
             break
     shown = [r for r in every if abs(r) <= 1.001 * slow]
     shown += [b.s for b in breaks if abs(b.s) <= 3.0 * slow]
     reach = 40.0 if L.theta else 8.0
-    first = sorted(c.omega for c in crossed if 0 < c.omega <= reach * slow)[:1]
-    points = np.array([*shown, *(1j * w for w in first)])
-    half = 1.4 * max(float(np.abs(points.imag).max(initial=0.0)), 0.8 * slow)
+    first = min((c.omega for c in crossed if 0 < c.omega <= reach * slow), default=0.0)
+    if first:
+        shown.append(complex(0.0, first))
+    half = 1.4 * max([0.8 * slow, *(abs(s.imag) for s in shown)])
     if L.theta:
         # Roots much faster than the dead time are left outside, or its endless chain of poles would fill the picture.
         half = min(half, WIDEST_IN_DEAD_TIMES / L.theta)
-        points = points[np.abs(points) <= 1.5 * half]
-    left, right = min(float(points.real.min(initial=0.0)), 0.0), max(float(points.real.max(initial=0.0)), 0.0)
+        shown = [s for s in shown if abs(s) <= 1.5 * half]
+    left, right = min([0.0, *(s.real for s in shown)]), max([0.0, *(s.real for s in shown)])
     pad = 0.35 * half
     return (min(left - pad, -0.9 * half), right + pad), (-half, half)

@@ -16,6 +16,12 @@ ComplexArray = npt.NDArray[np.complex128]
 RESIDUAL = 1e-8
 
 
+def at_meeting(L: TransferFunction, s: complex, poles: ComplexArray) -> npt.NDArray[np.bool_]:
+    """Which poles at the gain of a meeting point s cannot be told from it, given what is left of 1 + K L at each."""
+    curvature = abs(sum((s - p) ** -2 for p in L.poles.tolist()) - sum((s - z) ** -2 for z in L.zeros.tolist()))
+    return np.asarray(np.abs(poles - s) ** 2 * curvature <= 20.0 * RESIDUAL)
+
+
 def meet(L: TransferFunction, K: float, poles: ComplexArray, breaks: Iterable[Breakaway]) -> ComplexArray:
     """The poles at gain K with those of a meeting point put on it, two at least.
 
@@ -36,8 +42,7 @@ def meet(L: TransferFunction, K: float, poles: ComplexArray, breaks: Iterable[Br
     for b in breaks:
         if abs(K - b.K) > 1e-12 * b.K:
             continue
-        curvature = abs((1.0 / (b.s - L.poles) ** 2).sum() - (1.0 / (b.s - L.zeros) ** 2).sum())
-        here = np.abs(poles - b.s) ** 2 * curvature <= 20.0 * RESIDUAL
+        here = at_meeting(L, b.s, poles)
         many = max(int(np.count_nonzero(here)), 2)
         poles = np.concatenate([poles[~here], np.full(many, b.s, dtype=complex)])
     return poles

@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
-from math import ceil, log, log10
+from math import ceil, exp, log, log10
 
 import numpy as np
 import numpy.typing as npt
 
 from looplab.engine.errors import InvalidInput
 from looplab.engine.stability.locus.construction import (
+    LARGEST_LOG,
     Angle,
     Asymptotes,
     AxisCrossing,
@@ -93,7 +94,7 @@ def root_locus(L: TransferFunction) -> RootLocus:
     Raises
     ------
     InvalidInput
-        No pole could move: L is zero, or has neither poles nor dead time.
+        No pole could move: L is zero, or has neither poles nor dead time; or none moves at a gain that is a number.
 
     References
     ----------
@@ -124,15 +125,23 @@ def root_locus(L: TransferFunction) -> RootLocus:
 def _rational_gains(L: TransferFunction, marks: list[float], size: float) -> FloatArray:
     """From where poles barely move to where the asymptotes have left the window; the meeting gains among them."""
     excess = max(L.relative_degree, 1)
-    leave = (1.5 * size) ** excess / abs(L.gain) if L.relative_degree else 10.0 / abs(L.gain)
+    far = excess * log(1.5 * size) if L.relative_degree else log(10.0)
+    if abs(far - log(abs(L.gain))) > LARGEST_LOG:
+        raise InvalidInput(
+            "the gains at which the poles move leave double precision",
+            field="plant",
+            hint="choose a time unit in which the roots are moderate",
+        )
+    leave = exp(far - log(abs(L.gain)))
     low = min([*marks, leave]) * 1e-3
     high = max([10.0 * m for m in marks] + [100.0 * leave])
-    grid = np.exp(np.linspace(log(low), log(high), ceil(GAINS_PER_DECADE * log10(high / low)) + 1))
+    count = ceil(GAINS_PER_DECADE * log10(high / low))
+    grid = [low * (high / low) ** (i / count) for i in range(count + 1)]
     if not L.relative_degree and L.gain < 0:
         # A branch passes through infinity, at a gain that must not be hit.
-        grid[np.abs(grid * L.gain + 1.0) < 0.01] *= 1.02
+        grid = [K * 1.02 if abs(K * L.gain + 1.0) < 0.01 else K for K in grid]
     between = [(a * b) ** 0.5 for a, b in pairwise(sorted(marks))]
-    return np.unique(np.concatenate([[0.0], grid, marks, between]))
+    return np.array(sorted({0.0, *grid, *marks, *between}))
 
 
 def _delay_gains(L: TransferFunction, marks: list[float], inside: Rectangle) -> FloatArray:
