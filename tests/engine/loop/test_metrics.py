@@ -160,8 +160,10 @@ def test_default_horizon_suits_the_plant(plant: str) -> None:
 
 
 def test_a_response_that_jumps_needs_no_time_to_rise() -> None:
-    """A pure gain is at its end at once. (s + 9)/(9 s + 1), closed (s + 9)/(10 (s + 1)), jumps to 1/10 and rises to 9/10:
-    y = 0.9 - 0.8 exp(-t) passes 90 % of that, 0.81, at ln(0.8/0.09)."""
+    """A pure gain is at its end at once; (s + 9)/(9 s + 1) jumps to 1/10 and rises to 9/10.
+
+    Closed it is (s + 9)/(10 (s + 1)): y = 0.9 - 0.8 exp(-t) passes 90 % of its end, 0.81, at ln(0.8/0.09).
+    """
     for plant, rises in (("0.5", 0.0), ("(s+9)/(9 s+1)", np.log(0.8 / 0.09))):
         loop = FeedbackLoop(parse_transfer_function(plant), TransferFunction())
         m = step_metrics(closed_loop_step(loop, 10.0, 501).setpoint, setpoint=1.0, stable=True)

@@ -301,18 +301,20 @@ def window(
 
     A root much faster than the rest (a filter pole) is left outside.
     """
-    every = [*L.poles.tolist(), *L.zeros.tolist()]
-    sizes = sorted(abs(r) for r in every)
+    roots_ = [(abs(p), 1) for p in L.poles.tolist()] + [(abs(z), -1) for z in L.zeros.tolist()]
+    sizes = sorted(size for size, _ in roots_)
     slow = sizes[-1] if sizes and sizes[-1] else 1.0
+    reach = 40.0 if L.theta else 8.0
+    first = min((c.omega for c in crossed if c.omega > 0), default=0.0)
     for i, (small, large) in enumerate(pairwise(sizes), 1):
-        if large > 6.0 * small > 0.0 and i >= 2:
+        # The slow ones must have something to say: poles that zeros do not make up for, and the first crossing.
+        own = sum(sense for size, sense in roots_ if size <= small)
+        if large > 6.0 * small > 0.0 and i >= 2 and own > 0 and first <= reach * small:
             slow = small
             break
-    shown = [r for r in every if abs(r) <= 1.001 * slow]
+    shown = [r for r in [*L.poles.tolist(), *L.zeros.tolist()] if abs(r) <= 1.001 * slow]
     shown += [b.s for b in breaks if abs(b.s) <= 3.0 * slow]
-    reach = 40.0 if L.theta else 8.0
-    first = min((c.omega for c in crossed if 0 < c.omega <= reach * slow), default=0.0)
-    if first:
+    if 0 < first <= reach * slow:
         shown.append(complex(0.0, first))
     half = 1.4 * max([0.8 * slow, *(abs(s.imag) for s in shown)])
     if L.theta:
