@@ -5,7 +5,7 @@ from __future__ import annotations
 import cmath
 from collections.abc import Iterable
 from functools import lru_cache
-from math import ceil, hypot, inf, isfinite, log, pi
+from math import ceil, inf, isfinite, log, pi
 from operator import attrgetter
 
 import numpy as np
@@ -31,7 +31,8 @@ MOST = 120
 # Poles that are wanted, and pairs of them that are kept at most.
 LISTED, MOST_PAIRS = 24, 60
 STEPS = 8
-DEEPEST = 40.0
+# Where the chain begins in dead times left of the axis, at most.
+DEEPEST = 200.0
 # Poles closer than this, relative to their size, are one; a part smaller than AXIS of it is none.
 SAME, AXIS = 1e-7, 1e-9
 
@@ -39,35 +40,37 @@ SAME, AXIS = 1e-7, 1e-9
 def dead_time_poles(loop: FeedbackLoop) -> ComplexArray:
     """The rightmost closed-loop poles of a loop with dead time, hidden modes included: rightmost first, then slowest.
 
-    Eigenvalues of the collocated delay line and the chain of poles beside the phase crossovers are brought onto the
-    exact equation. As many must lie in the right half-plane as Nyquist counts there: with few nodes, or with more.
+    The lowest are eigenvalues of the collocated delay line, brought onto the exact equation; from the highest of them a
+    chain leads up to the others. As many must lie in the right half-plane as Nyquist counts there: where few nodes do
+    not show them, more are taken.
     """
     L, hidden = split_hidden_modes(loop.open_loop)
     found = crossings(L)
     turns = loop.theta * max(found.gain_omega.tolist(), default=0.0)
-    first = _nodes_for_the_chain(L)
-    poles = _poles(loop, L, found, min(ceil(first + PER_TURN * turns), MOST))
+    first = _first_of_chain(L)
+    # A polynomial follows exp(x) over a length |x| with about |x|/2 terms, and a few more for digits.
+    nodes = min(max(ceil(6.0 + 0.55 * loop.theta * abs(first)), FEW), ENOUGH)
+    poles = _poles(loop, L, found, first, min(ceil(nodes + PER_TURN * turns), MOST))
     right = nyquist_count(L).Z
-    if first < ENOUGH and right is not None and right != _many(s for s in poles if s.real > 0.0):
-        poles = _poles(loop, L, found, min(ceil(ENOUGH + PER_TURN * turns), MOST))
+    if nodes < ENOUGH and right is not None and right != _many(s for s in poles if s.real > 0.0):
+        poles = _poles(loop, L, found, first, min(ceil(ENOUGH + PER_TURN * turns), MOST))
     poles += [s for s in hidden.tolist() if s.imag >= 0.0]
     if hidden.size:
         poles.sort(key=_order)
     return np.array([p for s in poles for p in ((s, s.conjugate()) if s.imag else (s,))][:LISTED])
 
 
-def _nodes_for_the_chain(L: TransferFunction) -> int:
-    """Nodes that resolve the lowest pole of the chain, about one turn of the dead time above the real axis."""
+def _first_of_chain(L: TransferFunction) -> complex:
+    """About where the chain has a pole one turn of the dead time above the real axis."""
     unit, gain, depth = scalar_loop(L.unit), abs(L.gain), 0.0
     for _ in range(3):
         # Left of the axis by depth/theta, where the dead time makes up for |L|.
         value, _ = unit.value_and_rate(complex(-depth, 2.0 * pi) / L.theta, gain)
         depth = min(max(depth - log(abs(value) or TINY), 0.0), DEEPEST)
-    # A polynomial follows exp(x) over a length |x| with about |x|/2 terms, and a few more for digits.
-    return min(max(ceil(6.0 + 0.55 * hypot(depth, 2.0 * pi)), FEW), ENOUGH)
+    return complex(-depth, 2.0 * pi) / L.theta
 
 
-def _poles(loop: FeedbackLoop, L: TransferFunction, found: Crossings, nodes: int) -> list[complex]:
+def _poles(loop: FeedbackLoop, L: TransferFunction, found: Crossings, first: complex, nodes: int) -> list[complex]:
     """Of each pair the one above the real axis, rightmost first."""
     theta = loop.theta
     # The collocation resolves about half a wave per node; what it cannot resolve is noise.
@@ -75,8 +78,13 @@ def _poles(loop: FeedbackLoop, L: TransferFunction, found: Crossings, nodes: int
     every = eigenvalues(delay_line_matrix(loop_equations(loop.lumped), theta, nodes)).tolist()
     poles = _distinct(_on_equation(L, [s for s in every if 0.0 <= s.imag < top and s.real > left]))
     highest = max((s for s in poles if 0.0 < s.imag < top), key=attrgetter("imag"), default=0j)
-    poles += _chain(L, highest, LISTED - _many(poles)) if highest else []
-    end = max(poles[-1].imag, 0.25 * top) if poles else 0.25 * top
+    chain = _chain(L, highest, LISTED - _many(poles)) if highest else []
+    if not chain:
+        # The highest was none of the chain.
+        for s in _on_equation(L, [first]):
+            chain = [*_chain(L, s, LISTED, down=True), s, *_chain(L, s, LISTED)]
+    poles += chain
+    end = max([0.25 * top, highest.imag, *(s.imag for s in chain)])
     # Where the chain ends each phase crossover may have a pole left of it, where the dead time makes up for |L|: so it
     # begins anew. Resonances have poles beside the chain.
     resonant = 2.0 * max((r.imag for r in [*L.zeros.tolist(), *L.poles.tolist()]), default=0.0)
@@ -102,10 +110,11 @@ def _chain(L: TransferFunction, start: complex, most: int, down: bool = False) -
     unit, gain, s = scalar_loop(L.unit), abs(L.gain), start
     out: list[complex] = []
     _, rate, bend = unit.value_and_rates(s, gain)
-    while (s.real > 0.0 or 2 * len(out) < most) and len(out) < MOST_PAIRS:
-        step = (2j if down else -2j) * pi / rate
-        turn = step * bend / rate
-        if not abs(turn) < 0.5:
+    while rate and (s.real > 0.0 or 2 * len(out) < most) and len(out) < MOST_PAIRS:
+        turned = -2j * pi / rate
+        step, turn = (-turned, -turned * bend / rate) if down else (turned, turned * bend / rate)
+        # Where the dead time rules, the next pole is above this one.
+        if not (abs(turn) < 0.5 and turned.imag > 0.5 * abs(turned)):
             break
         ahead = s + step / (1.0 + 0.5 * turn)
         found = _polished(unit, gain, ahead) if ahead.imag > 0.0 else None
@@ -125,7 +134,7 @@ def _on_equation(L: TransferFunction, start: list[complex]) -> list[complex]:
     """Those of the approximate poles that lead to a pole nearby."""
     if max(L.order, L.zeros.size) > SMALL_ORDER:
         poles, good = polish_closed_loop_poles(L, np.array(start, dtype=complex), steps=STEPS)
-        return poles[good].tolist()  # type: ignore[no-any-return]
+        return poles[good].tolist()
     unit, gain = scalar_loop(L.unit), abs(L.gain)
     polished = (_polished(unit, gain, s) for s in start)
     return [p[0] for p in polished if p is not None]
@@ -153,7 +162,7 @@ def _polished(unit: ScalarLoop, gain: float, start: complex) -> tuple[complex, c
         # Next to an open-loop pole L cannot be known better than the rounding of s allows.
         knowable = 8.0 * rounding * abs(rate)
         # Halley's misses shrink as their cubes.
-        if abs(turn) ** 2 * abs(step) <= rounding and abs(turn) < 0.01 or abs(step) <= 4.0 * rounding:
+        if (abs(turn) ** 2 * abs(step) <= rounding and abs(turn) < 0.01) or abs(step) <= 4.0 * rounding:
             return s, rate, bend
     return (s, rate, bend) if miss < max(1e-8, min(knowable, 0.1)) else None
 
@@ -182,7 +191,7 @@ def _distinct(poles: list[complex]) -> list[complex]:
 
 @lru_cache(maxsize=64)
 def _simple_real_poles(unit: TransferFunction) -> list[tuple[float, float]]:
-    """Real poles p that are not repeated, and ln of the size of c in 1 + c/(s - p) = 0 next to them for the unit gain."""
+    """Real poles p that are not repeated, and ln|c| of 1 + c/(s - p) = 0 next to them for the unit gain."""
     zeros, poles = unit.zeros.tolist(), unit.poles.tolist()
     out = []
     for p in poles:
