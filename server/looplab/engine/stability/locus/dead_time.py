@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from looplab.engine.stability.delay_line import chebyshev_differentiation
 from looplab.engine.stability.locus.construction import Breakaway
+from looplab.engine.stability.locus.continuation import join, smooth
 from looplab.engine.stability.locus.count import count_in_rectangle
 from looplab.engine.stability.locus.meeting import meet
 from looplab.engine.stability.locus.near_roots import poles_near_roots
@@ -24,6 +25,10 @@ ComplexArray = npt.NDArray[np.complex128]
 MAX_NODES = 110
 MAX_GAINS = 400
 CHECKS = 5
+# Eigenvalues are looked at again between gains, so often at most.
+ROUNDS = 6
+# So many gains to begin with where eigenvalues are taken at each.
+MANY_GAINS = 90
 # A branch moves less than this from one gain to the next [size of the picture].
 GATE = 0.3
 
@@ -68,7 +73,7 @@ class Collocation:
         found = np.where(near, found, np.nan)
         polished, good = polish_closed_loop_poles(self.L, found, gains[:, None], steps=6)
         good &= inside.contains(polished)
-        rows = [_distinct(row[ok]) for row, ok in zip(polished, good, strict=True)]
+        rows = [_distinct(row[ok], inside.top) for row, ok in zip(polished, good, strict=True)]
         for near in poles_near_roots(self.L, gains) if self.careful else ():
             for k in np.flatnonzero(np.isfinite(near.poles).all(axis=1)):
                 new = near.poles[k][inside.contains(near.poles[k])]
@@ -76,19 +81,21 @@ class Collocation:
         return rows
 
 
-def _distinct(poles: ComplexArray) -> ComplexArray:
-    """Without the copies that Newton made of one root, and with exact conjugates."""
+def _distinct(poles: ComplexArray, size: float) -> ComplexArray:
+    """Without the copies that Newton made of one root, and with exact conjugates, in a picture of some size."""
+    # At the origin there is nothing but rounding.
+    least = 1e-9 * size
     real: list[complex] = []
     upper: list[complex] = []
     for s in poles.tolist():
-        rounding = 1e-7 * abs(s)
+        rounding = 1e-7 * max(abs(s), least)
         if s.imag > rounding:
             upper.append(s)
         elif s.imag >= -rounding:
             real.append(complex(s.real))
     kept: list[complex] = []
     for s in real + upper:
-        if all(abs(s - other) > 1e-6 * max(abs(s), 1e-9) for other in kept):
+        if all(abs(s - other) > 1e-6 * max(abs(s), least) for other in kept):
             kept += [s] if s.imag == 0 else [s, s.conjugate()]
     return np.array(kept, dtype=complex)
 
@@ -135,7 +142,7 @@ def _join(L: TransferFunction, gains: FloatArray, rows: list[ComplexArray], gate
         on.append(now)
     branches = np.full((count, len(rows)), np.nan, dtype=complex)
     branches[np.concatenate(on).astype(int), np.nonzero(there)[0]] = poles[there]
-    return branches[np.count_nonzero(np.isfinite(branches), axis=1) > 1]
+    return branches
 
 
 def _coarse(branches: ComplexArray, size: float, corner: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
@@ -181,24 +188,68 @@ def dead_time_branches(
     """
     L, hidden = split_hidden_modes(L)
     nodes = int(min(12 + np.ceil(L.theta * np.hypot(inside.top, inside.left)), MAX_NODES))
-    positive = gains[gains > 0]
-    line = Collocation(L, nodes)
-    if not _proved(line, positive, inside):
-        line = Collocation(L, min(2 * nodes, MAX_NODES), careful=True)
-    meeting = np.array([b.K for b in breaks])
-    fine, rows = _follow(line, positive, inside, size, meeting)
-    proved = _proved(line, fine, inside)
-    if not proved and not line.careful:
-        careful = Collocation(L, min(2 * nodes, MAX_NODES), careful=True)
-        fine, rows = _follow(careful, positive, inside, size, meeting)
-        proved = _proved(careful, fine, inside)
-    near = [b for b in breaks if inside.contains(np.array([b.s]))[0]]
+    near = tuple(b for b in breaks if inside.contains(np.array([b.s]))[0])
+    for line in (Collocation(L, nodes), Collocation(L, min(2 * nodes, MAX_NODES), careful=True)):
+        found = _continued(line, gains, near, inside, size)
+        if found is not None and _proved(L, *found, inside):
+            gains, branches, proved = *found, True
+            break
+    else:
+        gains, branches, proved = _followed(line, _denser(gains, [b.K for b in near]), near, inside, size)
+    branches = branches[np.count_nonzero(np.isfinite(branches), axis=1) > 1]
+    stay = np.tile(hidden[inside.contains(hidden)][:, None], (1, gains.size))
+    return gains, np.concatenate([branches, stay]), proved
+
+
+def _continued(
+    line: Collocation, gains: FloatArray, near: tuple[Breakaway, ...], inside: Rectangle, size: float
+) -> tuple[FloatArray, ComplexArray] | None:
+    """Gains and branches with eigenvalues at a few gains only; None where those between were not all found."""
+    L, marks = line.L, [b.K for b in near]
+    gains = gains[gains > 0]
+    every = dict(zip(gains.tolist(), line.poles(gains, inside), strict=True))
+    for K in marks:
+        if K in every:
+            every[K] = meet(L, K, every[K], near)
+    every[0.0] = L.poles[inside.contains(L.poles)].astype(complex)
+    for _ in range(ROUNDS):
+        gains = np.array(sorted(every))
+        rows = [every[K] for K in gains.tolist()]
+        known, unsure, at, missed = join(L, gains, rows, np.isin(gains, marks), inside.contains, size)
+        extra = np.sqrt(gains[:-1] * gains[1:])[unsure]
+        if not extra.size:
+            known, extra = smooth(L, known, inside.contains, size)
+            if not extra.size:
+                return known.gains, known.poles.T
+        elif at.size:
+            poles, good = polish_closed_loop_poles(L, missed, gains[at], steps=6)
+            good &= inside.contains(poles)
+            for K, s in zip(gains[at[good]].tolist(), poles[good].tolist(), strict=True):
+                more = _distinct(np.array([*every[K].tolist(), s, s.conjugate()]), inside.top)
+                if more.size > every[K].size:
+                    every[K], unsure[gains[1:] == K], unsure[gains[:-1] == K] = more, False, False
+            extra = np.sqrt(gains[:-1] * gains[1:])[unsure]
+        if extra.size:
+            every.update(zip(extra.tolist(), line.poles(extra, inside), strict=True))
+    return None
+
+
+def _denser(gains: FloatArray, marks: list[float]) -> FloatArray:
+    """As many gains as it takes where each is looked at for itself."""
+    return np.unique(np.concatenate([np.geomspace(gains[1], gains[-1], MANY_GAINS), marks]))
+
+
+def _followed(
+    line: Collocation, gains: FloatArray, near: tuple[Breakaway, ...], inside: Rectangle, size: float
+) -> tuple[FloatArray, ComplexArray, bool]:
+    """Gains and branches with eigenvalues at every gain, and whether none is missing."""
+    L = line.L
+    fine, rows = _follow(line, gains, inside, size, np.array([b.K for b in near]))
     rows = [meet(L, K, row, near) for K, row in zip(fine.tolist(), rows, strict=True)]
     start = L.poles[inside.contains(L.poles)]
     gains = np.concatenate([[0.0], fine])
     branches = _join(L, gains, [start.astype(complex), *rows], GATE * size)
-    stay = np.tile(hidden[inside.contains(hidden)][:, None], (1, gains.size))
-    return gains, np.concatenate([branches, stay]), proved
+    return gains, branches, _proved(L, gains, branches, inside)
 
 
 def _follow(
@@ -218,11 +269,10 @@ def _follow(
     return gains, rows
 
 
-def _proved(line: Collocation, gains: FloatArray, inside: Rectangle) -> bool:
-    # A little beside the gains of the grid, some of which have double poles.
-    some = gains[np.linspace(0, gains.size - 1, CHECKS).astype(int)] * 1.0037
-    for K, row in zip(some, line.poles(some, inside), strict=True):
-        count = count_in_rectangle(line.L, float(K), inside.left, inside.right, -inside.top, inside.top)
-        if count is not None and count != row.size:
+def _proved(L: TransferFunction, gains: FloatArray, branches: ComplexArray, inside: Rectangle) -> bool:
+    """Whether the argument principle finds as many poles at some of the gains."""
+    for k in np.linspace(1, gains.size - 1, CHECKS).astype(int).tolist():
+        count = count_in_rectangle(L, float(gains[k]), inside.left, inside.right, -inside.top, inside.top)
+        if count is not None and count != np.count_nonzero(np.isfinite(branches[:, k])):
             return False
     return True

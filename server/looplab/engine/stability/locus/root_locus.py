@@ -32,7 +32,8 @@ from looplab.engine.systems.transfer_function import TransferFunction
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-START_GAINS = 90
+# With dead time.
+MOST_GAINS = 90
 GAINS_PER_DECADE = 3
 
 
@@ -150,4 +151,12 @@ def _delay_gains(L: TransferFunction, marks: list[float], inside: Rectangle) -> 
     start = L.poles[inside.contains(L.poles)] + 0.02 * inside.top
     near = np.abs(L(start)) if start.size else np.zeros(0)
     low = min([low, *(1.0 / near[np.isfinite(near) & (near > 0)])])
-    return np.unique(np.concatenate([[0.0], np.geomspace(low, max(high, 2 * low), START_GAINS), marks]))
+    high = max(high, 2.0 * low)
+    # Between two gains a pole of the dead time moves by a third of ln 10, or by part of the rectangle.
+    step = min(log(10.0) / GAINS_PER_DECADE, 0.25 * L.theta * (inside.right - inside.left))
+    count = min(ceil(log(high / low) / step), MOST_GAINS)
+    grid = [low * (high / low) ** (i / count) for i in range(count + 1)]
+    # Next to a meeting gain eigenvalues are not sharp.
+    grid = [K for K in grid if all(abs(K - mark) > 1e-3 * mark for mark in marks)]
+    between = [(a * b) ** 0.5 for a, b in pairwise(sorted(marks))]
+    return np.array(sorted({0.0, *grid, *marks, *between}))
