@@ -213,17 +213,17 @@ def _cubics(
     forward = np.where(first, 2.0 * (end - start) - backward, forward)
     backward = np.where(last, 2.0 * (end - start) - forward, backward)
     leaves, arrives = np.where(first, forward, rates[:-1]), np.where(last, backward, rates[1:])
-    # One that comes or goes within the interval goes straight on.
+    # One that comes or goes within the interval goes straight on over ln K.
     comes, goes = np.isnan(start) & ~last, np.isnan(end) & ~first
+    on, straight = np.where(comes, rates[1:], rates[:-1]), comes | goes
     cubic = np.array([
-        np.where(comes, end - backward, start),
-        np.where(goes, start + forward, end),
-        np.where(comes, backward, forward),
-        np.where(goes, forward, backward),
+        np.where(comes, end - rise[:, None] * on, start),
+        np.where(goes, start + rise[:, None] * on, end),
+        np.where(straight, begins * on, forward),
+        np.where(straight, ends * on, backward),
     ])
     chord = cubic[1] - cubic[0]
     length = np.abs(chord) / size
-    # Its direction alone says where one that comes or goes is.
     turn = np.abs(_angle(leaves, chord)) + np.abs(_angle(chord, arrives))
     with np.errstate(invalid="ignore"):
         parts = np.maximum(
