@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil, hypot
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +11,7 @@ import numpy.typing as npt
 from looplab.engine.stability.delay_line import chebyshev_differentiation
 from looplab.engine.stability.locus.construction import Breakaway
 from looplab.engine.stability.locus.continuation import join, smooth
-from looplab.engine.stability.locus.count import count_in_rectangle
+from looplab.engine.stability.locus.count import count_on_both_sides
 from looplab.engine.stability.locus.meeting import meet
 from looplab.engine.stability.locus.near_roots import poles_near_roots
 from looplab.engine.stability.locus.pairs import nearest_pairs
@@ -67,13 +68,14 @@ class Collocation:
 
     def poles(self, gains: FloatArray, inside: Rectangle) -> list[ComplexArray]:
         """Exact closed-loop poles in the rectangle, for each gain; where ``careful``, those near roots of L anew."""
-        M = self.fixed + gains[:, None, None] * self.per_gain
-        found = np.linalg.eigvals(M).astype(complex)
-        near = np.abs(found) < 2.0 * (np.hypot(max(abs(inside.left), inside.right), inside.top))
-        found = np.where(near, found, np.nan)
-        polished, good = polish_closed_loop_poles(self.L, found, gains[:, None], steps=6)
+        found = np.linalg.eigvals(self.fixed + gains[:, None, None] * self.per_gain)
+        # Those below the real axis are conjugates.
+        reach = 2.0 * hypot(max(abs(inside.left), inside.right), inside.top)
+        at, which = ((np.abs(found) < reach) & (found.imag >= 0.0)).nonzero()
+        polished, good = polish_closed_loop_poles(self.L, found[at, which].astype(complex), gains[at], steps=6)
         good &= inside.contains(polished)
-        rows = [_distinct(row[ok], inside.top) for row, ok in zip(polished, good, strict=True)]
+        ends = np.cumsum(np.bincount(at[good], minlength=gains.size))[:-1]
+        rows = [_distinct(row, inside.top) for row in np.split(polished[good], ends)]
         for near in poles_near_roots(self.L, gains) if self.careful else ():
             for k in np.flatnonzero(np.isfinite(near.poles).all(axis=1)):
                 new = near.poles[k][inside.contains(near.poles[k])]
@@ -187,9 +189,11 @@ def dead_time_branches(
         The argument principle found as many poles as were followed, at five gains.
     """
     L, hidden = split_hidden_modes(L)
-    nodes = int(min(12 + np.ceil(L.theta * np.hypot(inside.top, inside.left)), MAX_NODES))
+    # A polynomial follows exp(x) over a length |x| with about |x|/2 terms, and a few more for digits.
+    nodes = min(ceil(8.0 + 0.75 * L.theta * hypot(inside.top, inside.left)), MAX_NODES)
     near = tuple(b for b in breaks if inside.contains(np.array([b.s]))[0])
-    for line in (Collocation(L, nodes), Collocation(L, min(2 * nodes, MAX_NODES), careful=True)):
+    for careful in (False, True):
+        line = Collocation(L, min(2 * nodes, MAX_NODES) if careful else nodes, careful)
         found = _continued(line, gains, near, inside, size)
         if found is not None and _proved(L, *found, inside):
             gains, branches, proved = *found, True
@@ -271,8 +275,7 @@ def _follow(
 
 def _proved(L: TransferFunction, gains: FloatArray, branches: ComplexArray, inside: Rectangle) -> bool:
     """Whether the argument principle finds as many poles at some of the gains."""
-    for k in np.linspace(1, gains.size - 1, CHECKS).astype(int).tolist():
-        count = count_in_rectangle(L, float(gains[k]), inside.left, inside.right, -inside.top, inside.top)
-        if count is not None and count != np.count_nonzero(np.isfinite(branches[:, k])):
-            return False
-    return True
+    at = np.linspace(1, gains.size - 1, CHECKS).astype(int)
+    there = np.count_nonzero(np.isfinite(branches[:, at]), axis=0).tolist()
+    counted = count_on_both_sides(L, gains[at], inside.left, inside.right, inside.top)
+    return all(count in (None, many) for count, many in zip(counted, there, strict=True))
