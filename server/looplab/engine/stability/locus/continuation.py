@@ -149,7 +149,9 @@ def smooth(L: TransferFunction, known: Branches, inside: Inside, size: float) ->
         at = np.repeat(cut, count)
         x = (1 + np.arange(at.size) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(count + 1, count)
         share = np.where(back[at], 1.0 - x, x) ** 2 * (high - low)[at]
-        gains = np.where(power[at], np.where(back[at], high[at] - share, low[at] + share), low[at] * (high / low)[at] ** x)
+        gains = np.where(
+            power[at], np.where(back[at], high[at] - share, low[at] + share), low[at] * (high / low)[at] ** x
+        )
         guess = _points(cubic[:, at], x[:, None])
         poles, good = polish_closed_loop_poles(L, guess, gains[:, None], steps=6)
         poles.imag[guess.imag == 0.0] = 0.0
@@ -187,8 +189,8 @@ def _cubics(
     low, high : ndarray, shape (m-1,)
         Gains at the ends, > 0: what begins at K = 0 is left as it is.
     power, back : ndarray of bool
-        ln K is linear in x; where a meeting point begins or ends the interval (``power``) K is quadratic, since branches
-        leave such points as a root of the gain does; counted from the end where ``back``.
+        ln K is linear in x; where a meeting point begins or ends the interval (``power``) K is quadratic, since
+        branches leave such points as a root of the gain does; counted from the end where ``back``.
     cubic : ndarray, shape (4, m-1, n)
         Ends and slopes there.
     parts : ndarray of int
@@ -216,12 +218,14 @@ def _cubics(
     # One that comes or goes within the interval goes straight on over ln K.
     comes, goes = np.isnan(start) & ~last, np.isnan(end) & ~first
     on, straight = np.where(comes, rates[1:], rates[:-1]), comes | goes
-    cubic = np.array([
-        np.where(comes, end - rise[:, None] * on, start),
-        np.where(goes, start + rise[:, None] * on, end),
-        np.where(straight, begins * on, forward),
-        np.where(straight, ends * on, backward),
-    ])
+    cubic = np.array(
+        [
+            np.where(comes, end - rise[:, None] * on, start),
+            np.where(goes, start + rise[:, None] * on, end),
+            np.where(straight, begins * on, forward),
+            np.where(straight, ends * on, backward),
+        ]
+    )
     chord = cubic[1] - cubic[0]
     length = np.abs(chord) / size
     turn = np.abs(_angle(leaves, chord)) + np.abs(_angle(chord, arrives))

@@ -77,7 +77,7 @@ def _turns(L: TransferFunction, gains: FloatArray, corners: list[complex]) -> li
     """How far D + K N e^{-theta s} turns along a polygon, for each gain [rad]."""
     # Of a symmetric rectangle half a side is half as long.
     longest = max(abs(b - a) for a, b in pairwise(corners))
-    path = [corners[:1]]
+    path = [np.array(corners[:1])]
     for a, b in pairwise(corners):
         count = 1 + int((LEAST_POINTS * abs(b - a)) / longest + 4.0 * L.theta * abs((b - a).imag))
         path.append(a + (b - a) * (np.arange(1, count + 1) / count))
@@ -90,11 +90,12 @@ def _turns(L: TransferFunction, gains: FloatArray, corners: list[complex]) -> li
             quotient = value[:, 1:] / value[:, :-1]
             turn = np.arctan2(quotient.imag, quotient.real)
             fast = ~(np.abs(turn) < LARGEST_TURN)
-            out = [None if bad else t for bad, t in zip(fast.any(axis=1).tolist(), turn.sum(axis=1).tolist(), strict=True)]
+            unsure, total = fast.any(axis=1), turn.sum(axis=1)
+            out = [None if unsure[k] else float(total[k]) for k in range(gains.size)]
             at = np.flatnonzero(fast.any(axis=0))
             if not at.size or s.size + at.size > MAX_POINTS:
                 break
-            middle = 0.5 * (s[at] + s[at + 1])
+            middle: ComplexArray = 0.5 * (s[at] + s[at + 1])
             s = np.insert(s, at + 1, middle)
             d, n = _terms(L, middle)
             value = np.insert(value, at + 1, d + gains[:, None] * n, axis=1)
