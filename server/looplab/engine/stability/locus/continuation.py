@@ -148,10 +148,8 @@ def smooth(L: TransferFunction, known: Branches, inside: Inside, size: float) ->
         count = parts[cut] - 1
         at = np.repeat(cut, count)
         x = (1 + np.arange(at.size) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(count + 1, count)
-        share = np.where(back[at], 1.0 - x, x) ** 2 * (high - low)[at]
-        gains = np.where(
-            power[at], np.where(back[at], high[at] - share, low[at] + share), low[at] * (high / low)[at] ** x
-        )
+        share = np.where(back[at], 1.0 - (1.0 - x) ** 2, x**2)
+        gains = np.where(power[at], low[at] + share * (high - low)[at], low[at] * (high / low)[at] ** x)
         guess = _points(cubic[:, at], x[:, None])
         poles, good = polish_closed_loop_poles(L, guess, gains[:, None], steps=6)
         poles.imag[guess.imag == 0.0] = 0.0
@@ -214,21 +212,20 @@ def _cubics(
     first, last = root[:-1], root[1:]
     forward = np.where(first, 2.0 * (end - start) - backward, forward)
     backward = np.where(last, 2.0 * (end - start) - forward, backward)
-    leaves, arrives = np.where(first, forward, rates[:-1]), np.where(last, backward, rates[1:])
-    # One that comes or goes within the interval goes straight on over ln K.
-    comes, goes = np.isnan(start) & ~last, np.isnan(end) & ~first
-    on, straight = np.where(comes, rates[1:], rates[:-1]), comes | goes
-    cubic = np.array(
-        [
-            np.where(comes, end - rise[:, None] * on, start),
-            np.where(goes, start + rise[:, None] * on, end),
-            np.where(straight, begins * on, forward),
-            np.where(straight, ends * on, backward),
-        ]
-    )
-    chord = cubic[1] - cubic[0]
+    directions = np.array([np.where(first, forward, rates[:-1]), np.where(last, backward, rates[1:])])
+    outside = np.isnan(poles)
+    if outside.any():
+        # One that comes or goes within the interval goes straight on over ln K.
+        comes, goes = outside[:-1] & ~last, outside[1:] & ~first
+        on, straight = np.where(comes, rates[1:], rates[:-1]), comes | goes
+        far = rise[:, None] * on
+        start, end = np.where(comes, end - far, start), np.where(goes, start + far, end)
+        forward, backward = np.where(straight, begins * on, forward), np.where(straight, ends * on, backward)
+    cubic = np.array([start, end, forward, backward])
+    chord = end - start
     length = np.abs(chord) / size
-    turn = np.abs(_angle(leaves, chord)) + np.abs(_angle(chord, arrives))
+    turns = directions * chord.conj()
+    turn = np.abs(np.arctan2(turns.imag, turns.real)).sum(axis=0)
     with np.errstate(invalid="ignore"):
         parts = np.maximum(
             np.where(length > LONGEST_STEP, np.maximum(length, np.abs(cubic[2:]).max(axis=0) / size), 0.0) / AIMED_STEP,
@@ -237,8 +234,3 @@ def _cubics(
     count = np.clip(np.ceil(parts.max(axis=1)), 1, MOST_PARTS).astype(np.intp)
     count[gains[:-1] == 0.0] = 1
     return low, high, power, back, cubic, count
-
-
-def _angle(a: ComplexArray, b: ComplexArray) -> FloatArray:
-    turned = b * a.conj()
-    return np.arctan2(turned.imag, turned.real)

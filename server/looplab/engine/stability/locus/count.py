@@ -89,9 +89,8 @@ def _turns(L: TransferFunction, gains: FloatArray, corners: list[complex]) -> li
         for _ in range(MAX_ROUNDS):
             quotient = value[:, 1:] / value[:, :-1]
             turn = np.arctan2(quotient.imag, quotient.real)
-            fast = ~(np.abs(turn) < LARGEST_TURN)
-            unsure, total = fast.any(axis=1), turn.sum(axis=1)
-            out = [None if unsure[k] else float(total[k]) for k in range(gains.size)]
+            fast = np.asarray(~(np.abs(turn) < LARGEST_TURN))
+            out = [None if f.any() else float(t.sum()) for f, t in zip(fast, turn, strict=True)]
             at = np.flatnonzero(fast.any(axis=0))
             if not at.size or s.size + at.size > MAX_POINTS:
                 break
