@@ -53,18 +53,18 @@ class Collocation:
     def __init__(self, L: TransferFunction, nodes: int, careful: bool = False) -> None:
         ss = realize(L)
         n = ss.B.size
-        D = chebyshev_differentiation(nodes) / L.theta
+        D = chebyshev_differentiation(nodes)[1:] / L.theta
         self.L = L
         self.careful = careful
         self.fixed = np.zeros((n + nodes, n + nodes))
         self.fixed[:n, :n] = ss.A
-        self.fixed[n:, n:] = -D[1:, 1:]
+        np.negative(D[:, 1:], out=self.fixed[n:, n:])
         # The line carries y in units that make C of size 1: balancing alone does not undo a large gain.
         unit = float(np.linalg.norm(ss.C)) or 1.0
-        self.fixed[n:, :n] = -np.outer(D[1:, 0], ss.C / unit)
+        np.multiply(D[:, :1], ss.C / -unit, out=self.fixed[n:, :n])
         self.per_gain = np.zeros_like(self.fixed)
         self.per_gain[:n, -1] = -ss.B * unit
-        self.per_gain[n:, -1] += D[1:, 0] * ss.D
+        self.per_gain[n:, -1] += D[:, 0] * ss.D
 
     def poles(self, gains: FloatArray, inside: Rectangle) -> list[ComplexArray]:
         """Exact closed-loop poles in the rectangle, for each gain; where ``careful``, those near roots of L anew."""
