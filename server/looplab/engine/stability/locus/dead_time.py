@@ -21,6 +21,7 @@ from looplab.engine.systems.realization import realize
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
 ComplexArray = npt.NDArray[np.complex128]
 
 MAX_NODES = 110
@@ -194,7 +195,7 @@ def dead_time_branches(
     near = tuple(b for b in breaks if inside.contains(np.array([b.s]))[0])
     for careful in (False, True):
         line = Collocation(L, min(2 * nodes, MAX_NODES) if careful else nodes, careful)
-        found = _continued(line, gains, near, inside, size)
+        found = _continued(line, gains, near, np.isin(gains, [b.K for b in breaks]), inside, size)
         if found is not None and _proved(L, *found, inside):
             gains, branches, proved = *found, True
             break
@@ -206,15 +207,19 @@ def dead_time_branches(
 
 
 def _continued(
-    line: Collocation, gains: FloatArray, near: tuple[Breakaway, ...], inside: Rectangle, size: float
+    line: Collocation,
+    gains: FloatArray,
+    near: tuple[Breakaway, ...],
+    meeting: BoolArray,
+    inside: Rectangle,
+    size: float,
 ) -> tuple[FloatArray, ComplexArray] | None:
     """Gains and branches with eigenvalues at a few gains only; None where those between were not all found."""
-    L, marks = line.L, [b.K for b in near]
+    L, marks = line.L, gains[meeting].tolist()
     gains = gains[gains > 0]
     every = dict(zip(gains.tolist(), line.poles(gains, inside), strict=True))
     for K in marks:
-        if K in every:
-            every[K] = meet(L, K, every[K], near)
+        every[K] = meet(L, K, every[K], near)
     every[0.0] = L.poles[inside.contains(L.poles)].astype(complex)
     for _ in range(ROUNDS):
         gains = np.array(sorted(every))
