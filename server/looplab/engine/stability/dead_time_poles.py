@@ -117,7 +117,10 @@ def _chain(L: TransferFunction, start: complex, most: int, down: bool = False) -
         if not (abs(turn) < 0.5 and turned.imag > 0.5 * abs(turned)):
             break
         ahead = s + step / (1.0 + 0.5 * turn)
-        found = _polished(unit, gain, ahead) if ahead.imag > 0.0 else None
+        if abs(ahead.imag) < 0.25 * abs(step):
+            # The lowest is real; otherwise it is its own conjugate that comes next.
+            ahead = complex(ahead.real)
+        found = _polished(unit, gain, ahead) if ahead.imag >= 0.0 else None
         if found is None or not abs(found[0] - ahead) < 0.3 * abs(step):
             break
         s, rate, bend = found
