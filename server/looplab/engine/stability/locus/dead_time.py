@@ -14,7 +14,6 @@ from looplab.engine.stability.locus.continuation import join, smooth
 from looplab.engine.stability.locus.count import count_on_both_sides
 from looplab.engine.stability.locus.meeting import meet
 from looplab.engine.stability.locus.near_roots import poles_near_roots
-from looplab.engine.stability.locus.pairs import nearest_pairs
 from looplab.engine.stability.polish import polish_closed_loop_poles
 from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.realization import realize
@@ -25,14 +24,14 @@ BoolArray = npt.NDArray[np.bool_]
 ComplexArray = npt.NDArray[np.complex128]
 
 MAX_NODES = 110
-MAX_GAINS = 400
+# No more are added from so many gains on.
+MAX_GAINS = 200
 CHECKS = 5
 # Eigenvalues are looked at again between gains, so often at most.
 ROUNDS = 6
-# So many gains to begin with where eigenvalues are taken at each.
+# So often gains are added where eigenvalues are taken at each, and so many gains there are to begin with.
+REFINEMENTS = 4
 MANY_GAINS = 90
-# A branch moves less than this from one gain to the next [size of the picture].
-GATE = 0.3
 
 
 @dataclass(frozen=True)
@@ -43,7 +42,7 @@ class Rectangle:
     right: float
     top: float
 
-    def contains(self, s: ComplexArray) -> npt.NDArray[np.bool_]:
+    def contains(self, s: ComplexArray) -> BoolArray:
         """Which points lie inside; it is symmetric about the real axis."""
         return np.asarray((s.real > self.left) & (s.real < self.right) & (np.abs(s.imag) < self.top))
 
@@ -103,54 +102,9 @@ def _distinct(poles: ComplexArray, size: float) -> ComplexArray:
     return np.array(kept, dtype=complex)
 
 
-def _links(L: TransferFunction, gains: FloatArray, poles: ComplexArray, gate: float) -> list[list[int]]:
-    """Which pole of the next gain each pole becomes, -1 for none; poles of shape (m, n) with NaN where there are fewer.
-
-    Each is followed along its tangent ds/dK = -L/(K L') to the nearest pole within ``gate``.
-    """
-    with np.errstate(all="ignore"):
-        ahead = -np.log(gains[1:] / gains[:-1])[:, None] / L.log_derivative(poles[:-1])
-        ahead[~(np.abs(ahead) < gate)] = 0.0
-        gap = np.abs((poles[:-1] + ahead)[:, :, None] - poles[1:, None, :])
-    gap[~(gap <= gate)] = np.inf
-    nearest = gap.argmin(axis=2)
-    reached = np.isfinite(gap.min(axis=2))
-    mutual = np.take_along_axis(gap.argmin(axis=1), nearest, axis=1) == np.arange(poles.shape[1])
-    links = np.where(reached & mutual, nearest, -1)
-    # The nearest of some pole is nearer to another: the nearest pairs come first.
-    for i in np.flatnonzero((reached & ~mutual).any(axis=1)).tolist():
-        links[i] = -1
-        for a, b in nearest_pairs(gap[i], gate):
-            links[i, a] = b
-    steps: list[list[int]] = links.tolist()
-    return steps
-
-
-def _join(L: TransferFunction, gains: FloatArray, rows: list[ComplexArray], gate: float) -> ComplexArray:
-    """Branches as rows of an array with NaN where a branch is outside, shape (branches, gains)."""
-    sizes = [row.size for row in rows]
-    there = np.arange(max(sizes)) < np.array(sizes)[:, None]
-    poles = np.full(there.shape, np.nan, dtype=complex)
-    poles[there] = np.concatenate(rows)
-    # Which branch each pole is on.
-    on, count = [list(range(sizes[0]))], sizes[0]
-    for step, size in zip(_links(L, gains, poles, gate), sizes[1:], strict=True):
-        now = [-1] * size
-        for branch, k in zip(on[-1], step, strict=False):
-            if k >= 0:
-                now[k] = branch
-        for k in range(size):
-            if now[k] < 0:
-                now[k], count = count, count + 1
-        on.append(now)
-    branches = np.full((count, len(rows)), np.nan, dtype=complex)
-    branches[np.concatenate(on).astype(int), np.nonzero(there)[0]] = poles[there]
-    return branches
-
-
-def _coarse(branches: ComplexArray, size: float, corner: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+def _coarse(branches: ComplexArray, size: float, corner: BoolArray) -> BoolArray:
     """Intervals of the gain in which some branch jumps, or turns but for a corner, shape (gains-1,)."""
-    far: npt.NDArray[np.bool_]
+    far: BoolArray
     with np.errstate(all="ignore"):
         step = np.diff(branches, axis=1)
         length = np.abs(step)
@@ -251,31 +205,23 @@ def _denser(gains: FloatArray, marks: list[float]) -> FloatArray:
 def _followed(
     line: Collocation, gains: FloatArray, near: tuple[Breakaway, ...], inside: Rectangle, size: float
 ) -> tuple[FloatArray, ComplexArray, bool]:
-    """Gains and branches with eigenvalues at every gain, and whether none is missing."""
-    L = line.L
-    fine, rows = _follow(line, gains, inside, size, np.array([b.K for b in near]))
-    rows = [meet(L, K, row, near) for K, row in zip(fine.tolist(), rows, strict=True)]
-    start = L.poles[inside.contains(L.poles)]
-    gains = np.concatenate([[0.0], fine])
-    branches = _join(L, gains, [start.astype(complex), *rows], GATE * size)
-    return gains, branches, _proved(L, gains, branches, inside)
-
-
-def _follow(
-    line: Collocation, gains: FloatArray, inside: Rectangle, size: float, meeting: FloatArray
-) -> tuple[FloatArray, list[ComplexArray]]:
-    """Gains, more of them where a branch jumps or turns (but at ``meeting`` gains), and the poles at each."""
-    rows = line.poles(gains, inside)
-    for _ in range(4):
-        coarse = _coarse(_join(line.L, gains, rows, GATE * size), size, np.isin(gains, meeting))
-        if not coarse.any() or gains.size > MAX_GAINS:
+    """Gains and branches with eigenvalues at every gain, more where a branch jumps or turns; and what was proved."""
+    L, marks = line.L, [b.K for b in near]
+    every = {0.0: L.poles[inside.contains(L.poles)].astype(complex)}
+    extra = gains
+    for left in range(REFINEMENTS, -1, -1):
+        for K, row in zip(extra.tolist(), line.poles(extra, inside), strict=True):
+            every[K] = meet(L, K, row, near)
+        gains = np.array(sorted(every))
+        meeting = np.isin(gains, marks)
+        branches = join(L, gains, [every[K] for K in gains.tolist()], meeting, inside.contains, size).branches.poles.T
+        coarse = _coarse(branches, size, meeting)
+        # What K = 0 begins is left as it is.
+        coarse[0] = False
+        extra = np.sqrt(gains[:-1] * gains[1:])[coarse]
+        if not extra.size or gains.size > MAX_GAINS or not left:
             break
-        extra = np.sqrt(gains[:-1][coarse] * gains[1:][coarse])
-        rows += line.poles(extra, inside)
-        gains = np.concatenate([gains, extra])
-        order = np.argsort(gains, kind="stable")
-        gains, rows = gains[order], [rows[k] for k in order]
-    return gains, rows
+    return gains, branches, _proved(L, gains, branches, inside)
 
 
 def _proved(L: TransferFunction, gains: FloatArray, branches: ComplexArray, inside: Rectangle) -> bool:
