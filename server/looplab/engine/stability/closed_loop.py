@@ -63,9 +63,9 @@ def closed_loop_poles(loop: FeedbackLoop) -> ClosedLoopPoles:
     Returns
     -------
     ClosedLoopPoles
-        Without dead time all n of them, from the state matrix. With dead time the rightmost of infinitely many: the
-        delay line is collocated at Chebyshev points and each candidate is then polished on the exact equation
-        :math:`L_0(s) e^{-\theta s} = -1`.
+        Without dead time all n of them, from the state matrix. With dead time the rightmost 24 of infinitely many: the
+        delay line is collocated at Chebyshev points, and what that finds, with the chain of poles above it, is
+        polished on the exact equation :math:`L_0(s) e^{-\theta s} = -1`.
 
     References
     ----------
