@@ -209,12 +209,18 @@ def test_of_poles_above_one_another_the_slowest_is_named() -> None:
         ("exp(-0.5 s)/(s+1)^3", PID(1.6, 2.0, 0.5)),
         ("exp(-0.1 s)/(0.5s+1)", PID(4.0, 0.4)),
         ("exp(-s)/(s+1)", PID(0.5, 1.5)),
+        # Far left of the axis, where few nodes do not reach; beside a resonance; more than are listed on the right.
+        ("exp(-0.06 s)/((s+0.5)(s+1)(s+1.5)(s+2)(s+3)(s+4)(s+5))", PID(2.0, 3.0, 0.5)),
+        ("exp(-0.3 s)/((s+1)(s^2+0.2s+400))", PID(100.0, 2.0)),
+        ("exp(-3 s)/(s^2+0.1s+4)", PID(2.0, 5.0)),
+        ("exp(-20 s)/((s+1)(s+2))", PID(30.0, 1.0)),
     ],
 )
 def test_the_chain_of_dead_time_poles_has_no_gap(plant: str, C: PID) -> None:
     """As many as the argument principle counts lie right of the last one listed, up to its height."""
     closed = loop(plant, C)
     poles = closed_loop_poles(closed).poles
+    assert poles.size == 24
     left = 0.5 * (poles.real[-1] + poles.real[-3])  # the last are a pair
     listed = poles[poles.real > left]
     top = 1.05 * np.abs(listed.imag).max()

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import lambertw
 
+from independent import count_in_box
 from looplab.engine.stability import breakaway_points, count_in_rectangle, root_locus
 from looplab.engine.systems import TransferFunction, parse_transfer_function
 
@@ -90,6 +91,24 @@ def test_branches_are_continuous(text: str) -> None:
         step = np.abs(np.diff(locus.branches, axis=1))
         seen = (locus.branches[:, :-1].real > left) & (np.abs(locus.branches[:, :-1].imag) < top)
     assert np.nanmax(np.where(seen, step, 0.0)) < 0.15 * size
+
+
+def test_twenty_equal_poles() -> None:
+    """Eigenvalues scatter around them, so that they cannot be followed from a few gains only: that is said."""
+    L = parse_transfer_function("exp(-s)/(s+1)^20")
+    locus = root_locus(L)
+    K, s = points(L)
+    assert np.abs(1 + K * L(s)).max() < 2e-8
+    (left, right), (_, top) = locus.view
+    missing = 0
+    for k in np.linspace(1, locus.gains.size - 1, 8).astype(int):
+        s = locus.branches[:, k]
+        inside = np.count_nonzero((s.real > left) & (s.real < right) & (np.abs(s.imag) < top))
+        gain = locus.gains[k]
+        missing += inside != count_in_box(
+            lambda s: (s + 1) ** 20, lambda s, gain=gain: gain + 0 * s, 1.0, left, right, top
+        )  # type: ignore[misc]
+    assert missing == 0 or not locus.complete
 
 
 def test_integrator_with_dead_time_is_lamberts_function() -> None:

@@ -30,8 +30,8 @@ FloatArray = npt.NDArray[np.float64]
 
 MAX_PIECES = 60_000
 LARGEST_STATE = 1e14
-# States that marching finds at once.
-BLOCK = 8
+# States that marching finds at once, few and many of them: the more, the longer it takes to get ready.
+FEW_PIECES, MANY_PIECES, LONG = 4, 8, 200
 # Above this size marching is cheaper than powers of the companion matrix.
 LARGEST_COMPANION = 250
 
@@ -104,7 +104,7 @@ def _march(F: FloatArray, x0: FloatArray, lag: int, count: int) -> FloatArray:
     x[before] = x0
     flat = np.ascontiguousarray(F[::-1].transpose(1, 0, 2).reshape(n, J * n))  # oldest first
     if lag == 1:
-        several = _several_pieces(flat, min(BLOCK, J, count))
+        several = _several_pieces(flat, min(FEW_PIECES if count < LONG else MANY_PIECES, J, count))
         states, stop = x.reshape(-1, x0.shape[1]), (count + before) * n
         for k in range((before + 1) * n, stop, several.shape[0]):
             rows = min(several.shape[0], stop - k)
@@ -115,14 +115,20 @@ def _march(F: FloatArray, x0: FloatArray, lag: int, count: int) -> FloatArray:
     return x
 
 
-def _several_pieces(flat: FloatArray, count: int) -> FloatArray:
-    """The next ``count`` states from the past, shape (count*n, J*n), where ``flat`` (n, J*n) gives the next one."""
-    n, width = flat.shape
-    out = np.zeros((count * n, width))
-    for i in range(0, count * n, n):
-        # What is known of the past, and what the states before this one make of it.
-        out[i : i + n, i:] = flat[:, : width - i]
-        out[i : i + n] += flat[:, width - i :] @ out[:i]
+def _several_pieces(flat: FloatArray, most: int) -> FloatArray:
+    """The next ``count`` states from the past, shape (count*n, J*n), where ``flat`` (n, J*n) gives the next one.
+
+    The count is the largest power of two up to ``most`` <= J: each doubling lets the states found so far be the past.
+    """
+    width = flat.shape[1]
+    out = flat
+    while 2 * out.shape[0] <= most * flat.shape[0]:
+        known = out.shape[0]
+        more = np.zeros((2 * known, width))
+        more[:known] = out
+        np.matmul(out[:, width - known :], out, out=more[known:])
+        more[known:, known:] += out[:, : width - known]
+        out = more
     return out
 
 

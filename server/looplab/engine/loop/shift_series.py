@@ -24,8 +24,8 @@ Matrices = TypeVar("Matrices", FloatArray, ComplexArray)
 Symbol = Callable[[ComplexArray], tuple[ComplexArray, ComplexArray]]
 
 TAIL = 1e-15
-# Coefficients this small, relative to the largest, are left out.
-NEGLIGIBLE = 1e-16
+# Coefficients this small, relative to the largest, are left out; up to the second if the last ones are as large.
+NEGLIGIBLE, LARGEST_NEGLIGIBLE = 1e-16, 4e-15
 STAGNATION = 1e-11
 MAX_NODES = 4096
 # Largest exp(s A(z)) on the circle: that many digits of the coefficients may be lost to cancellation.
@@ -100,26 +100,33 @@ def pieces_of_dead_time(symbol: Symbol, theta: float, radius: float) -> int:
     return int(pieces)
 
 
-def _powers_of(step: ComplexArray, rows: ComplexArray, count: int) -> ComplexArray:
-    """rows @ step^k for k = 0..count-1, shape (nodes, count, p, n), by doubling."""
+def _squares(step: ComplexArray, count: int) -> list[ComplexArray]:
+    """step, step^2, step^4 ... up to the largest that count powers are made of."""
+    out = [step]
+    while 2 ** len(out) <= count:
+        out.append(out[-1] @ out[-1])
+    return out
+
+
+def _power(squares: list[ComplexArray], exponent: int) -> ComplexArray:
+    factors = [square for bit, square in enumerate(squares) if exponent >> bit & 1]
+    out = factors[0]
+    for factor in factors[1:]:
+        out = out @ factor
+    return out
+
+
+def _powers_of(squares: list[ComplexArray], rows: ComplexArray, count: int) -> ComplexArray:
+    """rows @ step^k for k = 0..count-1, shape (nodes, count p, n), by doubling."""
     nodes, p, n = rows.shape
     out = np.empty((nodes, count * p, n), dtype=complex)
     out[:, :p] = rows
     done = 1
-    while done < count:
+    for square in squares:
         more = min(done, count - done)
-        out[:, done * p : (done + more) * p] = out[:, : more * p] @ step
-        step = step @ step
+        if more > 0:
+            np.matmul(out[:, : more * p], square, out=out[:, done * p : (done + more) * p])
         done += more
-    return out.reshape(nodes, count, p, n)
-
-
-def _power(base: ComplexArray, exponent: int) -> ComplexArray:
-    out = base
-    for bit in bin(exponent)[3:]:
-        out = out @ out
-        if bit == "1":
-            out = out @ base
     return out
 
 
@@ -165,27 +172,31 @@ def shift_series(
         length = _norm(A) * (h * samples)
         if largest < np.inf and length > LONGEST_PIECE:
             return None
-        step = expm_batch(A * h)
-        whole = _power(step, samples)
-        if largest < np.inf and not _norm(whole) <= largest:
-            return None
+        squares = _squares(expm_batch(A * h, length / samples), samples)
+        whole = _power(squares, samples)
         # At these points the forward transform is the series itself, so irfft returns its coefficients.
         F = np.fft.irfft(whole, n=nodes, axis=0)
         size = np.abs(F).max(axis=(1, 2))
+        # The coefficients bound what they are the coefficients of.
+        if largest < np.inf and not (size.sum() * F.shape[1] <= largest or _norm(whole) <= largest):
+            return None
         # The exponential of a stiff matrix has rounding noise of its own, in every coefficient: a small tail that no
         # longer shrinks is that noise.
         noise = max(TAIL * 30.0, TAIL * length)
         tail, before = size[nodes * 3 // 4 :].max() / size.max(), tail
         if tail <= noise or nodes == MAX_NODES or 0.1 * before < tail < STAGNATION:
-            H = np.fft.irfft(_powers_of(step, C, samples), n=nodes, axis=0)
-            reach = np.abs(H).max(axis=(1, 2, 3))
+            H = np.fft.irfft(_powers_of(squares, C, samples), n=nodes, axis=0)
+            reach = np.abs(H).max(axis=(1, 2))
             if reach[nodes * 3 // 4 :].max() <= max(10 * noise, 2 * tail) * max(reach.max(), size.max()):
                 size = np.maximum(size / size.max(), reach / max(reach.max(), 1e-300))
-                last = int(np.flatnonzero(size[:terms] > NEGLIGIBLE)[-1]) + 1
-                if radius == 1.0:
-                    return F[:last], H[:last]
-                undo = radius ** -np.arange(last, dtype=float)
-                return F[:last] * undo[:, None, None], H[:last] * undo[:, None, None, None]
+                # What is as small as the last ones is rounding like them; one more is kept.
+                negligible = min(max(NEGLIGIBLE, float(size[nodes * 3 // 4 :].max())), LARGEST_NEGLIGIBLE)
+                last = min(int(np.flatnonzero(size[:terms] > negligible)[-1]) + 2, terms, nodes)
+                F, H = F[:last], H[:last]
+                if radius != 1.0:
+                    undo = (radius ** -np.arange(last, dtype=float))[:, None, None]
+                    F, H = F * undo, H * undo
+                return F, H.reshape(last, samples, *C.shape[1:])
         nodes *= 2
     raise NoConvergence(
         "the dead-time series does not converge for these settings",

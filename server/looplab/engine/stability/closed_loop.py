@@ -13,13 +13,11 @@ from looplab.engine.frequency.crossings import crossings
 from looplab.engine.frequency.nyquist import NyquistCount, nyquist_count
 from looplab.engine.loop.equations import loop_equations
 from looplab.engine.loop.feedback_loop import FeedbackLoop
-from looplab.engine.stability.delay_line import delay_line_matrix
-from looplab.engine.stability.polish import polish_closed_loop_poles, polish_few
-from looplab.engine.systems.hidden_modes import split_hidden_modes
+from looplab.engine.stability.dead_time_poles import dead_time_poles
+from looplab.engine.stability.polish import polish_few
 from looplab.engine.systems.polynomial import eigenvalues
 from looplab.engine.systems.transfer_function import TransferFunction
 
-FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 # A pole counts as on the imaginary axis when its real part is below this fraction of its size.
@@ -56,51 +54,6 @@ def _sorted(poles: ComplexArray) -> ComplexArray:
     return np.array(ordered, dtype=complex)
 
 
-def _dead_time_poles(loop: FeedbackLoop) -> ComplexArray:
-    L, hidden = split_hidden_modes(loop.open_loop)
-    theta = loop.theta
-    found = crossings(L)
-    fastest = float(found.gain_omega.max(initial=0.0))
-    nodes = int(min(20 + np.ceil(1.5 * theta * fastest), 120))
-    candidates = np.linalg.eigvals(delay_line_matrix(loop_equations(loop.lumped), theta, nodes)).astype(complex)
-    # The collocation resolves about half a wave per node; what it cannot resolve is noise.
-    candidates = candidates[(np.abs(candidates.imag) * theta < 0.75 * nodes) & (candidates.imag >= 0)]
-    # Beyond the collocation's reach each phase crossover has a pole left of it, where the dead time makes up for |L|.
-    far = np.isfinite(found.phase_log_magnitude)
-    beside = found.phase_log_magnitude[far] / theta + 1j * found.phase_omega[far]
-    candidates = np.concatenate([candidates, beside])
-    poles, good = polish_closed_loop_poles(L, candidates, steps=8)
-    poles = poles[good & (poles.imag >= -1e-9 * np.abs(poles))]
-    poles = _distinct(poles[np.argsort(-poles.real)][:60])
-    poles = np.concatenate([poles, _unmoved(L), hidden])
-    upper = poles[poles.imag > 1e-9 * np.abs(poles)]
-    real = poles[poles.imag <= 1e-9 * np.abs(poles)].real
-    return np.concatenate([real, upper, upper.conj()])
-
-
-@lru_cache(maxsize=64)
-def _simple_real_poles(unit: TransferFunction) -> tuple[ComplexArray, FloatArray]:
-    """Real poles p that are not repeated, and the size of c in 1 + c/(s - p) = 0 next to them for the unit gain."""
-    real = unit.poles[unit.poles.imag == 0]
-    poles = real[[np.count_nonzero(real == p) == 1 for p in real]]
-    with np.errstate(divide="ignore", over="ignore"):
-        to_zeros = np.log(np.abs(poles[:, None] - unit.zeros)).sum(axis=1)
-        apart = np.abs(poles[:, None] - unit.poles)
-        to_others = np.log(np.where(apart == 0.0, 1.0, apart)).sum(axis=1)
-        return poles, np.exp(to_zeros - to_others - unit.theta * poles.real)
-
-
-def _unmoved(L: TransferFunction) -> ComplexArray:
-    """Open-loop poles that the loop moves by less than rounding: s = p - c."""
-    poles, c = _simple_real_poles(L.unit)
-    return poles[abs(L.gain) * c < 1e-12 * np.abs(poles)]
-
-
-def _distinct(poles: ComplexArray) -> ComplexArray:
-    near = np.abs(poles[:, None] - poles) <= 1e-7 * np.maximum(np.abs(poles), 1e-12)[:, None]
-    return poles[~np.tril(near, -1).any(axis=1)]
-
-
 @lru_cache(maxsize=32)
 def closed_loop_poles(loop: FeedbackLoop) -> ClosedLoopPoles:
     r"""Roots of 1 + L(s) = 0, hidden (cancelled) modes included.
@@ -112,9 +65,9 @@ def closed_loop_poles(loop: FeedbackLoop) -> ClosedLoopPoles:
     Returns
     -------
     ClosedLoopPoles
-        Without dead time all n of them, from the state matrix. With dead time the rightmost of infinitely many: the
-        delay line is collocated at Chebyshev points and each candidate is then polished on the exact equation
-        :math:`L_0(s) e^{-\theta s} = -1`.
+        Without dead time all n of them, from the state matrix. With dead time the rightmost 24 of infinitely many: the
+        delay line is collocated at Chebyshev points, and what that finds, with the chain of poles above it, is
+        polished on the exact equation :math:`L_0(s) e^{-\theta s} = -1`.
 
     References
     ----------
@@ -127,8 +80,7 @@ def closed_loop_poles(loop: FeedbackLoop) -> ClosedLoopPoles:
         poles = eigenvalues(loop_equations(loop.lumped).closed_loop_matrix())
         return ClosedLoopPoles(_sorted(polish_few(loop.open_loop, poles)), True)
     reason = "dead time makes infinitely many closed-loop poles; the rightmost are listed"
-    poles = _sorted(_dead_time_poles(loop))
-    return ClosedLoopPoles(poles[:24], False, reason)
+    return ClosedLoopPoles(dead_time_poles(loop), False, reason)
 
 
 def _number(value: float) -> str:

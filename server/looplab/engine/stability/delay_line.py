@@ -35,11 +35,11 @@ def delay_line_matrix(equations: LoopEquations, theta: float, nodes: int) -> Flo
     """
     n = equations.base.shape[0] - 2
     g, DpDc = equations.g[:n], equations.DpDc
-    D = chebyshev_differentiation(nodes) / theta
+    D = chebyshev_differentiation(nodes)[1:] / theta
     M = np.zeros((n + nodes, n + nodes))
     M[:n, :n] = equations.base[:n, :n]
     M[:n, -1] = equations.b_y[:n]
-    M[n:, n:] = -D[1:, 1:]
-    M[n:, :n] = -np.outer(D[1:, 0], g)
-    M[n:, -1] += D[1:, 0] * DpDc
+    np.negative(D[:, 1:], out=M[n:, n:])
+    np.multiply(D[:, :1], -g, out=M[n:, :n])
+    M[n:, -1] += D[:, 0] * DpDc
     return M

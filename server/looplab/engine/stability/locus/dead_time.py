@@ -3,29 +3,35 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil, hypot
 
 import numpy as np
 import numpy.typing as npt
 
 from looplab.engine.stability.delay_line import chebyshev_differentiation
 from looplab.engine.stability.locus.construction import Breakaway
-from looplab.engine.stability.locus.count import count_in_rectangle
+from looplab.engine.stability.locus.continuation import join, smooth
+from looplab.engine.stability.locus.count import count_on_both_sides
 from looplab.engine.stability.locus.meeting import meet
 from looplab.engine.stability.locus.near_roots import poles_near_roots
-from looplab.engine.stability.locus.pairs import nearest_pairs
 from looplab.engine.stability.polish import polish_closed_loop_poles
 from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.realization import realize
 from looplab.engine.systems.transfer_function import TransferFunction
 
 FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
 ComplexArray = npt.NDArray[np.complex128]
 
 MAX_NODES = 110
-MAX_GAINS = 400
+# No more are added from so many gains on.
+MAX_GAINS = 200
 CHECKS = 5
-# A branch moves less than this from one gain to the next [size of the picture].
-GATE = 0.3
+# Eigenvalues are looked at again between gains, so often at most.
+ROUNDS = 6
+# So often gains are added where eigenvalues are taken at each, and so many gains there are to begin with.
+REFINEMENTS = 4
+MANY_GAINS = 90
 
 
 @dataclass(frozen=True)
@@ -36,7 +42,7 @@ class Rectangle:
     right: float
     top: float
 
-    def contains(self, s: ComplexArray) -> npt.NDArray[np.bool_]:
+    def contains(self, s: ComplexArray) -> BoolArray:
         """Which points lie inside; it is symmetric about the real axis."""
         return np.asarray((s.real > self.left) & (s.real < self.right) & (np.abs(s.imag) < self.top))
 
@@ -47,28 +53,29 @@ class Collocation:
     def __init__(self, L: TransferFunction, nodes: int, careful: bool = False) -> None:
         ss = realize(L)
         n = ss.B.size
-        D = chebyshev_differentiation(nodes) / L.theta
+        D = chebyshev_differentiation(nodes)[1:] / L.theta
         self.L = L
         self.careful = careful
         self.fixed = np.zeros((n + nodes, n + nodes))
         self.fixed[:n, :n] = ss.A
-        self.fixed[n:, n:] = -D[1:, 1:]
+        np.negative(D[:, 1:], out=self.fixed[n:, n:])
         # The line carries y in units that make C of size 1: balancing alone does not undo a large gain.
         unit = float(np.linalg.norm(ss.C)) or 1.0
-        self.fixed[n:, :n] = -np.outer(D[1:, 0], ss.C / unit)
+        np.multiply(D[:, :1], ss.C / -unit, out=self.fixed[n:, :n])
         self.per_gain = np.zeros_like(self.fixed)
         self.per_gain[:n, -1] = -ss.B * unit
-        self.per_gain[n:, -1] += D[1:, 0] * ss.D
+        self.per_gain[n:, -1] += D[:, 0] * ss.D
 
     def poles(self, gains: FloatArray, inside: Rectangle) -> list[ComplexArray]:
         """Exact closed-loop poles in the rectangle, for each gain; where ``careful``, those near roots of L anew."""
-        M = self.fixed + gains[:, None, None] * self.per_gain
-        found = np.linalg.eigvals(M).astype(complex)
-        near = np.abs(found) < 2.0 * (np.hypot(max(abs(inside.left), inside.right), inside.top))
-        found = np.where(near, found, np.nan)
-        polished, good = polish_closed_loop_poles(self.L, found, gains[:, None], steps=6)
+        found = np.linalg.eigvals(self.fixed + gains[:, None, None] * self.per_gain)
+        # Those below the real axis are conjugates.
+        reach = 2.0 * hypot(max(abs(inside.left), inside.right), inside.top)
+        at, which = ((np.abs(found) < reach) & (found.imag >= 0.0)).nonzero()
+        polished, good = polish_closed_loop_poles(self.L, found[at, which].astype(complex), gains[at], steps=6)
         good &= inside.contains(polished)
-        rows = [_distinct(row[ok]) for row, ok in zip(polished, good, strict=True)]
+        ends = np.cumsum(np.bincount(at[good], minlength=gains.size))[:-1]
+        rows = [_distinct(row, inside.top) for row in np.split(polished[good], ends)]
         for near in poles_near_roots(self.L, gains) if self.careful else ():
             for k in np.flatnonzero(np.isfinite(near.poles).all(axis=1)):
                 new = near.poles[k][inside.contains(near.poles[k])]
@@ -76,71 +83,28 @@ class Collocation:
         return rows
 
 
-def _distinct(poles: ComplexArray) -> ComplexArray:
-    """Without the copies that Newton made of one root, and with exact conjugates."""
+def _distinct(poles: ComplexArray, size: float) -> ComplexArray:
+    """Without the copies that Newton made of one root, and with exact conjugates, in a picture of some size."""
+    # At the origin there is nothing but rounding.
+    least = 1e-9 * size
     real: list[complex] = []
     upper: list[complex] = []
     for s in poles.tolist():
-        rounding = 1e-7 * abs(s)
+        rounding = 1e-7 * max(abs(s), least)
         if s.imag > rounding:
             upper.append(s)
         elif s.imag >= -rounding:
             real.append(complex(s.real))
     kept: list[complex] = []
     for s in real + upper:
-        if all(abs(s - other) > 1e-6 * max(abs(s), 1e-9) for other in kept):
+        if all(abs(s - other) > 1e-6 * max(abs(s), least) for other in kept):
             kept += [s] if s.imag == 0 else [s, s.conjugate()]
     return np.array(kept, dtype=complex)
 
 
-def _links(L: TransferFunction, gains: FloatArray, poles: ComplexArray, gate: float) -> list[list[int]]:
-    """Which pole of the next gain each pole becomes, -1 for none; poles of shape (m, n) with NaN where there are fewer.
-
-    Each is followed along its tangent ds/dK = -L/(K L') to the nearest pole within ``gate``.
-    """
-    with np.errstate(all="ignore"):
-        ahead = -np.log(gains[1:] / gains[:-1])[:, None] / L.log_derivative(poles[:-1])
-        ahead[~(np.abs(ahead) < gate)] = 0.0
-        gap = np.abs((poles[:-1] + ahead)[:, :, None] - poles[1:, None, :])
-    gap[~(gap <= gate)] = np.inf
-    nearest = gap.argmin(axis=2)
-    reached = np.isfinite(gap.min(axis=2))
-    mutual = np.take_along_axis(gap.argmin(axis=1), nearest, axis=1) == np.arange(poles.shape[1])
-    links = np.where(reached & mutual, nearest, -1)
-    # The nearest of some pole is nearer to another: the nearest pairs come first.
-    for i in np.flatnonzero((reached & ~mutual).any(axis=1)).tolist():
-        links[i] = -1
-        for a, b in nearest_pairs(gap[i], gate):
-            links[i, a] = b
-    steps: list[list[int]] = links.tolist()
-    return steps
-
-
-def _join(L: TransferFunction, gains: FloatArray, rows: list[ComplexArray], gate: float) -> ComplexArray:
-    """Branches as rows of an array with NaN where a branch is outside, shape (branches, gains)."""
-    sizes = [row.size for row in rows]
-    there = np.arange(max(sizes)) < np.array(sizes)[:, None]
-    poles = np.full(there.shape, np.nan, dtype=complex)
-    poles[there] = np.concatenate(rows)
-    # Which branch each pole is on.
-    on, count = [list(range(sizes[0]))], sizes[0]
-    for step, size in zip(_links(L, gains, poles, gate), sizes[1:], strict=True):
-        now = [-1] * size
-        for branch, k in zip(on[-1], step, strict=False):
-            if k >= 0:
-                now[k] = branch
-        for k in range(size):
-            if now[k] < 0:
-                now[k], count = count, count + 1
-        on.append(now)
-    branches = np.full((count, len(rows)), np.nan, dtype=complex)
-    branches[np.concatenate(on).astype(int), np.nonzero(there)[0]] = poles[there]
-    return branches[np.count_nonzero(np.isfinite(branches), axis=1) > 1]
-
-
-def _coarse(branches: ComplexArray, size: float, corner: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+def _coarse(branches: ComplexArray, size: float, corner: BoolArray) -> BoolArray:
     """Intervals of the gain in which some branch jumps, or turns but for a corner, shape (gains-1,)."""
-    far: npt.NDArray[np.bool_]
+    far: BoolArray
     with np.errstate(all="ignore"):
         step = np.diff(branches, axis=1)
         length = np.abs(step)
@@ -180,49 +144,89 @@ def dead_time_branches(
         The argument principle found as many poles as were followed, at five gains.
     """
     L, hidden = split_hidden_modes(L)
-    nodes = int(min(12 + np.ceil(L.theta * np.hypot(inside.top, inside.left)), MAX_NODES))
-    positive = gains[gains > 0]
-    line = Collocation(L, nodes)
-    if not _proved(line, positive, inside):
-        line = Collocation(L, min(2 * nodes, MAX_NODES), careful=True)
-    meeting = np.array([b.K for b in breaks])
-    fine, rows = _follow(line, positive, inside, size, meeting)
-    proved = _proved(line, fine, inside)
-    if not proved and not line.careful:
-        careful = Collocation(L, min(2 * nodes, MAX_NODES), careful=True)
-        fine, rows = _follow(careful, positive, inside, size, meeting)
-        proved = _proved(careful, fine, inside)
-    near = [b for b in breaks if inside.contains(np.array([b.s]))[0]]
-    rows = [meet(L, K, row, near) for K, row in zip(fine.tolist(), rows, strict=True)]
-    start = L.poles[inside.contains(L.poles)]
-    gains = np.concatenate([[0.0], fine])
-    branches = _join(L, gains, [start.astype(complex), *rows], GATE * size)
+    # A polynomial follows exp(x) over a length |x| with about |x|/2 terms, and a few more for digits.
+    nodes = min(ceil(8.0 + 0.75 * L.theta * hypot(inside.top, inside.left)), MAX_NODES)
+    near = tuple(b for b in breaks if inside.contains(np.array([b.s]))[0])
+    for careful in (False, True):
+        line = Collocation(L, min(2 * nodes, MAX_NODES) if careful else nodes, careful)
+        found = _continued(line, gains, near, np.isin(gains, [b.K for b in breaks]), inside, size)
+        if found is not None and _proved(L, *found, inside):
+            gains, branches, proved = *found, True
+            break
+    else:
+        gains, branches, proved = _followed(line, _denser(gains, [b.K for b in near]), near, inside, size)
+    branches = branches[np.count_nonzero(np.isfinite(branches), axis=1) > 1]
     stay = np.tile(hidden[inside.contains(hidden)][:, None], (1, gains.size))
     return gains, np.concatenate([branches, stay]), proved
 
 
-def _follow(
-    line: Collocation, gains: FloatArray, inside: Rectangle, size: float, meeting: FloatArray
-) -> tuple[FloatArray, list[ComplexArray]]:
-    """Gains, more of them where a branch jumps or turns (but at ``meeting`` gains), and the poles at each."""
-    rows = line.poles(gains, inside)
-    for _ in range(4):
-        coarse = _coarse(_join(line.L, gains, rows, GATE * size), size, np.isin(gains, meeting))
-        if not coarse.any() or gains.size > MAX_GAINS:
+def _continued(
+    line: Collocation,
+    gains: FloatArray,
+    near: tuple[Breakaway, ...],
+    meeting: BoolArray,
+    inside: Rectangle,
+    size: float,
+) -> tuple[FloatArray, ComplexArray] | None:
+    """Gains and branches with eigenvalues at a few gains only; None where those between were not all found."""
+    L, marks = line.L, gains[meeting].tolist()
+    gains = gains[gains > 0]
+    every = dict(zip(gains.tolist(), line.poles(gains, inside), strict=True))
+    for K in marks:
+        every[K] = meet(L, K, every[K], near)
+    every[0.0] = L.poles[inside.contains(L.poles)].astype(complex)
+    for _ in range(ROUNDS):
+        gains = np.array(sorted(every))
+        rows = [every[K] for K in gains.tolist()]
+        known, unsure, at, missed = join(L, gains, rows, np.isin(gains, marks), inside.contains, size)
+        extra = np.sqrt(gains[:-1] * gains[1:])[unsure]
+        if not extra.size:
+            known, extra = smooth(L, known, inside.contains, size)
+            if not extra.size:
+                return known.gains, known.poles.T
+        elif at.size:
+            poles, good = polish_closed_loop_poles(L, missed, gains[at], steps=6)
+            good &= inside.contains(poles)
+            for K, s in zip(gains[at[good]].tolist(), poles[good].tolist(), strict=True):
+                more = _distinct(np.array([*every[K].tolist(), s, s.conjugate()]), inside.top)
+                if more.size > every[K].size:
+                    every[K], unsure[gains[1:] == K], unsure[gains[:-1] == K] = more, False, False
+            extra = np.sqrt(gains[:-1] * gains[1:])[unsure]
+        if extra.size:
+            every.update(zip(extra.tolist(), line.poles(extra, inside), strict=True))
+    return None
+
+
+def _denser(gains: FloatArray, marks: list[float]) -> FloatArray:
+    """As many gains as it takes where each is looked at for itself."""
+    return np.unique(np.concatenate([np.geomspace(gains[1], gains[-1], MANY_GAINS), marks]))
+
+
+def _followed(
+    line: Collocation, gains: FloatArray, near: tuple[Breakaway, ...], inside: Rectangle, size: float
+) -> tuple[FloatArray, ComplexArray, bool]:
+    """Gains and branches with eigenvalues at every gain, more where a branch jumps or turns; and what was proved."""
+    L, marks = line.L, [b.K for b in near]
+    every = {0.0: L.poles[inside.contains(L.poles)].astype(complex)}
+    extra = gains
+    for left in range(REFINEMENTS, -1, -1):
+        for K, row in zip(extra.tolist(), line.poles(extra, inside), strict=True):
+            every[K] = meet(L, K, row, near)
+        gains = np.array(sorted(every))
+        meeting = np.isin(gains, marks)
+        branches = join(L, gains, [every[K] for K in gains.tolist()], meeting, inside.contains, size).branches.poles.T
+        coarse = _coarse(branches, size, meeting)
+        # What K = 0 begins is left as it is.
+        coarse[0] = False
+        extra = np.sqrt(gains[:-1] * gains[1:])[coarse]
+        if not extra.size or gains.size > MAX_GAINS or not left:
             break
-        extra = np.sqrt(gains[:-1][coarse] * gains[1:][coarse])
-        rows += line.poles(extra, inside)
-        gains = np.concatenate([gains, extra])
-        order = np.argsort(gains, kind="stable")
-        gains, rows = gains[order], [rows[k] for k in order]
-    return gains, rows
+    return gains, branches, _proved(L, gains, branches, inside)
 
 
-def _proved(line: Collocation, gains: FloatArray, inside: Rectangle) -> bool:
-    # A little beside the gains of the grid, some of which have double poles.
-    some = gains[np.linspace(0, gains.size - 1, CHECKS).astype(int)] * 1.0037
-    for K, row in zip(some, line.poles(some, inside), strict=True):
-        count = count_in_rectangle(line.L, float(K), inside.left, inside.right, -inside.top, inside.top)
-        if count is not None and count != row.size:
-            return False
-    return True
+def _proved(L: TransferFunction, gains: FloatArray, branches: ComplexArray, inside: Rectangle) -> bool:
+    """Whether the argument principle finds as many poles at some of the gains."""
+    at = np.linspace(1, gains.size - 1, CHECKS).astype(int)
+    there = np.count_nonzero(np.isfinite(branches[:, at]), axis=0).tolist()
+    counted = count_on_both_sides(L, gains[at], inside.left, inside.right, inside.top)
+    return all(count in (None, many) for count, many in zip(counted, there, strict=True))

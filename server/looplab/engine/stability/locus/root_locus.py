@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
-from math import ceil, exp, log, log10
+from math import ceil, exp, inf, log, log10
 
 import numpy as np
 import numpy.typing as npt
@@ -33,7 +33,8 @@ from looplab.engine.systems.transfer_function import TransferFunction
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-START_GAINS = 90
+# With dead time.
+MOST_GAINS = 90
 GAINS_PER_DECADE = 3
 
 
@@ -146,17 +147,23 @@ def _rational_gains(L: TransferFunction, marks: list[float], size: float) -> Flo
 
 def _delay_gains(L: TransferFunction, marks: list[float], inside: Rectangle) -> FloatArray:
     """Gains between which poles cross the rectangle: 1/|L| along its sides, and the meeting gains."""
-    edge = 1j * np.linspace(0.0, inside.top, 12).astype(complex)
-    with np.errstate(divide="ignore"):
-        enter = 1.0 / np.abs(L(inside.left + edge))
-        leave = 1.0 / np.abs(L(inside.right + edge))
-    around = np.concatenate([enter, leave, marks])
-    around = around[np.isfinite(around) & (around > 0)]
-    low, high = 0.3 * float(around.min()), float(around.max())
-    if marks:
-        low, high = max(low, min(marks) * 1e-6), min(high, max(marks) * 1e4)
+    edge = 1j * np.linspace(0.0, inside.top, 12)
     # Branches leave a repeated pole fast: the first gain must not throw them far.
     start = L.poles[inside.contains(L.poles)] + 0.02 * inside.top
-    near = np.abs(L(start)) if start.size else np.zeros(0)
-    low = min([low, *(1.0 / near[np.isfinite(near) & (near > 0)])])
-    return np.unique(np.concatenate([[0.0], np.geomspace(low, max(high, 2 * low), START_GAINS), marks]))
+    with np.errstate(divide="ignore"):
+        size = 1.0 / np.abs(L(np.concatenate([inside.left + edge, inside.right + edge, start])))
+    every = size.tolist()
+    around = [K for K in every[: 2 * edge.size] + marks if 0.0 < K < inf]
+    low, high = 0.3 * min(around), max(around)
+    if marks:
+        low, high = max(low, min(marks) * 1e-6), min(high, max(marks) * 1e4)
+    low = min([low, *(K for K in every[2 * edge.size :] if 0.0 < K < inf)])
+    high = max(high, 2.0 * low)
+    # Between two gains a pole of the dead time moves by a third of ln 10, or by part of the rectangle.
+    step = min(log(10.0) / GAINS_PER_DECADE, 0.25 * L.theta * (inside.right - inside.left))
+    count = min(ceil(log(high / low) / step), MOST_GAINS)
+    grid = [low * (high / low) ** (i / count) for i in range(count + 1)]
+    # Next to a meeting gain eigenvalues are not sharp.
+    grid = [K for K in grid if all(abs(K - mark) > 1e-3 * mark for mark in marks)]
+    between = [(a * b) ** 0.5 for a, b in pairwise(sorted(marks))]
+    return np.array(sorted({0.0, *grid, *marks, *between}))
