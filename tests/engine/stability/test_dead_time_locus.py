@@ -193,3 +193,17 @@ def test_angles_are_the_directions_of_the_branches(text: str) -> None:
 )
 def test_real_axis_segments(text: str, segments: tuple) -> None:
     assert root_locus(parse_transfer_function(text)).real_axis_segments == segments
+
+
+@pytest.mark.parametrize("theta", [1e-2, 1.0, 300.0])
+def test_the_window_of_a_pure_dead_time_shows_its_first_crossing(theta: float) -> None:
+    """K exp(-theta s) = -1 has roots at ln K/theta + j (2k+1) pi/theta, all on the axis for K = 1."""
+    locus = root_locus(TransferFunction((), (), 1.0, theta))
+    (left, right), (_, top) = locus.view
+    assert left < 0 < right
+    assert top > np.pi / theta
+    assert locus.complete
+    K, s = (np.broadcast_to(locus.gains, locus.branches.shape), locus.branches)
+    there = np.isfinite(s)
+    assert there.any()
+    np.testing.assert_allclose(s[there].real * theta, np.log(K[there]), atol=1e-9)

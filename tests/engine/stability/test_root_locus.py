@@ -245,3 +245,11 @@ def test_what_has_no_locus(L: TransferFunction) -> None:
     with pytest.raises(InvalidInput) as caught:
         root_locus(L)
     assert caught.value.message
+
+
+def test_the_window_is_not_drawn_around_a_slow_pole_that_a_zero_makes_up_for() -> None:
+    """1/(s+1)^3 with a slow integral action: the three lags and the crossing matter, not the pair at 0 and -0.1."""
+    locus = root_locus(parse_transfer_function("(s+0.1)/(s (s+1)^3)"))
+    (left, _), (_, top) = locus.view
+    assert left < -1.0
+    assert top > min(c.omega for c in locus.imaginary_axis_crossings if c.omega > 0)

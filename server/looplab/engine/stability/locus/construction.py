@@ -303,7 +303,7 @@ def window(
     """
     roots_ = [(abs(p), 1) for p in L.poles.tolist()] + [(abs(z), -1) for z in L.zeros.tolist()]
     sizes = sorted(size for size, _ in roots_)
-    slow = sizes[-1] if sizes and sizes[-1] else 1.0
+    slow = sizes[-1] if sizes and sizes[-1] else np.pi / L.theta if L.theta else 1.0
     reach = 40.0 if L.theta else 8.0
     first = min((c.omega for c in crossed if c.omega > 0), default=0.0)
     for i, (small, large) in enumerate(pairwise(sizes), 1):
