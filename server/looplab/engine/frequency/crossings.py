@@ -142,21 +142,20 @@ def _on_axis(roots: npt.NDArray[np.complex128]) -> list[float]:
 
 
 def _gain_crossovers(L: TransferFunction, grid: Sampled) -> FloatArray:
-    level = -grid.shift
-    above = grid.curve.log_magnitude > level
+    level, on_grid, omega = -grid.shift, grid.curve.log_magnitude, grid.omega
+    above = on_grid > level
     at = (above[1:] != above[:-1]).nonzero()[0]
-    # Where |L| stays at 1, as that of an all-pass does, it crosses nothing but in rounding.
-    away = np.abs(grid.curve.log_magnitude - level)
-    at = at[np.maximum(away[at], away[at + 1]) > ROUNDING]
-    omega = grid.omega
-    if at.size <= FEW:
-        f, at_grid = scalar_loop(L.unit).log_magnitude, grid.curve.log_magnitude
-        return np.array(
-            [
-                exp(newton_in_bracket(f, log(omega[i]), log(omega[i + 1]), at_grid[i : i + 2].tolist(), level))
-                for i in at.tolist()
-            ]
-        )
+    brackets = [
+        (i, ends)
+        for i, *ends in zip(at.tolist(), on_grid[at].tolist(), on_grid[at + 1].tolist(), strict=True)
+        # Where |L| stays at 1, as that of an all-pass does, it crosses nothing but in rounding.
+        if max(abs(ends[0] - level), abs(ends[1] - level)) > ROUNDING
+    ]
+    if len(brackets) <= FEW:
+        f = scalar_loop(L.unit).log_magnitude
+        found = [exp(newton_in_bracket(f, log(omega[i]), log(omega[i + 1]), ends, level)) for i, ends in brackets]
+        return np.array(found)
+    at = np.array([i for i, _ in brackets])
     x = np.log(omega)
     return np.exp(refine_brackets(lambda x: log_magnitude(L, np.exp(x)), x[at], x[at + 1]))
 

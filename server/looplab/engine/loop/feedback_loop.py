@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from looplab.engine.errors import IllPosedLoop, InvalidInput
 from looplab.engine.loop.controllers import PID, require_causal
 from looplab.engine.systems.transfer_function import TransferFunction
+
+
+@lru_cache(maxsize=64)
+def _in_series(first: TransferFunction, second: TransferFunction) -> TransferFunction:
+    """One object for all gains: what is kept of it is found at once."""
+    return first * second
 
 
 @dataclass(frozen=True)
@@ -131,5 +137,5 @@ class FeedbackLoop:
     def locus_system(self) -> TransferFunction:
         """L per unit of that gain: what the root locus is drawn for."""
         if isinstance(self.controller, PID):
-            return self.controller.per_gain * self.path
+            return _in_series(self.controller.per_gain, self.path)
         return TransferFunction(self.C.zeros, self.C.poles, 1.0, self.C.theta) * self.path

@@ -94,14 +94,17 @@ class HermiteCurves:
         np.multiply(dy[:, :-1], h, out=m0)
         m1 = dy[:, 1:] * h
         self._chord = chord = y[:, 1:] - y[:, :-1]
+        self._climb = np.abs(chord)
         np.add(m0, m1, out=d)
-        d -= 2.0 * chord
+        d -= chord
+        d -= chord
         # The slope at the right end is the next sample's: at a kink it belongs to the next piece, so the cubic is
         # kept only where it agrees with the chord; elsewhere the parabola through both ends and the left slope.
         size = np.abs(m0)
         size += np.abs(m1)
-        np.maximum(size, np.abs(chord), out=size)
-        kink = np.abs(d) > 0.5 * size + 1e-300
+        np.maximum(size, self._climb, out=size)
+        size *= 0.5
+        kink = np.abs(d) > size
         self._corner: npt.NDArray[np.bool_] | None = None
         if kink.any():
             m1[kink] = (2.0 * chord - m0)[kink]
@@ -141,9 +144,9 @@ class HermiteCurves:
         begin = int(flat.searchsorted(first * m))
         flat, rise = flat[begin:], values[begin:] - start[begin:]
         chord = self._chord.take(flat)
-        detour = np.abs(rise) + np.abs(chord - rise) - np.abs(chord)
+        detour = np.abs(rise) + np.abs(chord - rise) - self._climb.take(flat)
         more = np.bincount(flat // m - first, weights=detour, minlength=self.y.shape[0] - first)
-        total: list[float] = (np.abs(self._chord[first:]).sum(axis=1) + more).tolist()
+        total: list[float] = (self._climb[first:].sum(axis=1) + more).tolist()
         return total
 
     def absolute_integrals(self, count: int) -> list[tuple[float, float, float]]:
@@ -183,10 +186,10 @@ class HermiteCurves:
 
     def first_crossing(self, row: int, level: float) -> float | None:
         """Time at which a curve first crosses a level."""
-        above = self.y[row] > level
-        changed = above != above[0]
-        i = int(changed.argmax())
-        return self._crossing(row, i - 1, level) if changed[i] else None
+        y = self.y[row]
+        beyond = y <= level if y[0] > level else y > level
+        i = int(beyond.argmax())
+        return self._crossing(row, i - 1, level) if i else None
 
     def last_outside(self, row: int, level: float, band: float) -> float | None:
         """When a curve comes within level +- band for the rest of the record; None where it ends outside."""

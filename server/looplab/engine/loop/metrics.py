@@ -117,8 +117,8 @@ def _judge(responses: Sequence[Response], setpoints: Sequence[float], stable: bo
             StepMetrics(reasons=dict.fromkeys(NUMBERS, "undefined: the closed loop is not stable")) for _ in responses
         ]
     count = len(responses)
-    values = np.concatenate([*(r.y for r in responses), *(r.u for r in responses)]).reshape(2 * count, -1)
-    slopes = np.concatenate([*(r.dy for r in responses), *(r.du for r in responses)]).reshape(2 * count, -1)
+    values = np.array([*(r.y for r in responses), *(r.u for r in responses)])
+    slopes = np.array([*(r.dy for r in responses), *(r.du for r in responses)])
     # The first rows are the errors y - r.
     for errors, setpoint in zip(values, setpoints, strict=False):
         if setpoint:

@@ -39,18 +39,29 @@ _TAYLOR = np.array([[1.0 / factorial(4 * i + j) for j in range(4)] for i in rang
 _COMPLEX_TAYLOR = _TAYLOR.astype(complex)
 
 
+@lru_cache(maxsize=64)
+def _identity(n: int) -> FloatArray:
+    return np.eye(n)
+
+
+def _product(matrices: Matrices) -> Callable[..., Matrices]:
+    """Matrix product for one matrix or many: for one small matrix `dot` is half as costly to call."""
+    return np.dot if matrices.ndim == 2 else np.matmul
+
+
 def _taylor(matrices: Matrices) -> Matrices:
     """exp of matrices of norm <= 1/2: degree 15 in powers of the fourth power (Paterson-Stockmeyer), error < 1e-18."""
+    product = _product(matrices)
     powers = np.empty((4, *matrices.shape), dtype=matrices.dtype)
-    powers[0], powers[1] = np.eye(matrices.shape[-1]), matrices
-    np.matmul(matrices, matrices, out=powers[2])
-    np.matmul(powers[2], matrices, out=powers[3])
-    a4 = powers[2] @ powers[2]
+    powers[0], powers[1] = _identity(matrices.shape[-1]), matrices
+    product(matrices, matrices, out=powers[2])
+    product(powers[2], matrices, out=powers[3])
+    a4 = product(powers[2], powers[2])
     taylor = _COMPLEX_TAYLOR if np.iscomplexobj(powers) else _TAYLOR
-    blocks = (taylor @ powers.reshape(4, -1)).reshape(powers.shape)
+    blocks = taylor.dot(powers.reshape(4, -1)).reshape(powers.shape)
     out = blocks[3]
     for block in (blocks[2], blocks[1], blocks[0]):
-        out = a4 @ out
+        out = product(a4, out)
         out += block
     return out
 
@@ -63,9 +74,10 @@ def expm_batch(matrices: Matrices, norm: float | None = None) -> Matrices:
     """exp of matrices, shape (..., n, n), real or complex, by scaling, a Taylor polynomial and squaring."""
     norm = _norm(matrices) if norm is None else norm
     squarings = max(0, ceil(log2(norm)) + 1) if norm > 0.5 else 0
+    product = _product(matrices)
     out = _taylor(matrices * 0.5**squarings)
     for _ in range(squarings):
-        out = out @ out
+        out = product(out, out)
     return out
 
 
