@@ -26,7 +26,9 @@ def walk(value: Any) -> list[float]:
 
 
 @pytest.mark.slow
-def test_a_quick_run_writes_finite_figures(tmp_path: Path) -> None:
+def test_a_quick_run_writes_finite_figures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Shorter nonlinear loops than the benchmark's: python-control takes seconds for each."""
+    monkeypatch.setattr(nonlinear_loops, "SCENARIOS", tuple(replace(s, samples=60) for s in SCENARIOS))
     out = tmp_path / "bench.json"
     result = CliRunner().invoke(app, ["bench", "--quick", "--no-server", "--out", str(out)])
     assert result.exit_code == 0, result.output

@@ -85,7 +85,7 @@ def test_models_of_three_lags(page: Page):
     expect(rule.locator("td").nth(2)).to_have_text("1.225")
     expect(page).to_have_url(re.compile("model_type=SOPDT"))
     expect(panel).to_contain_text("No two points:")
-    expect(panel).to_contain_text("this plant has order 3")
+    expect(panel).to_contain_text("This plant has order 3")
 
     panel.get_by_role("button", name=re.compile("^Use the SOPDT model by half rule")).click()
     expect(page.get_by_role("slider", name="damping zeta")).to_be_visible()

@@ -29,7 +29,7 @@ def main(arguments: Sequence[str] = ()) -> int:
     from looplab.bench import accuracy, column, loci, machine, moves, nonlinear_loops, report, saturated, server
 
     console = Console()
-    rounds = 5 if options.quick else 40
+    rounds = 3 if options.quick else 40
     requests = 100 if options.quick else 600
     results: dict[str, object] = {"machine": machine.describe(), "quick": options.quick, "rounds": rounds}
     steps = (len(moves.COMPARISONS) + len(loci.LOCI) + len(column.ROWS)) * rounds + len(accuracy.CASES)
