@@ -130,8 +130,8 @@ class HermiteCurves:
         first, stop = flat.searchsorted((row * m, (row + 1) * m)).tolist()
         piece = flat[first:stop] - row * m
         at, value = self.t[piece] + x[first:stop] * self.h[piece], values[first:stop]
-        if self._corner is not None:
-            corner = 1 + np.flatnonzero(self._corner[row])
+        corner = 1 + self._corner[row].nonzero()[0] if self._corner is not None else flat[:0]
+        if corner.size:
             at, value = np.append(at, self.t[corner]), np.append(value, self.y[row, corner])
             order = at.argsort(kind="stable")
             at, value = at[order], value[order]
