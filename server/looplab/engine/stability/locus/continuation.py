@@ -8,7 +8,16 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from looplab.engine.stability.locus.pairs import nearest_pairs
+from looplab.engine.stability.locus.cubics import (
+    AIMED_TURN,
+    AT_MEETING,
+    LARGEST_TURN,
+    MOST_PARTS,
+    TOO_SHORT,
+    hermite,
+    subdivided,
+)
+from looplab.engine.stability.locus.pairs import nearest_neighbour, nearest_pairs
 from looplab.engine.stability.polish import EPSILON, polish_closed_loop_poles
 from looplab.engine.systems.transfer_function import TransferFunction
 
@@ -21,15 +30,8 @@ Inside = Callable[[ComplexArray], BoolArray]
 
 MAX_GAINS = 400
 ROUNDS = 4
-# Of a branch: the longest step [sizes of the picture] and the largest turn [rad] between gains. What exceeds them is
-# cut finer than that, so that one cut is enough.
+# Of a branch the longest step between gains [sizes of the picture], and what longer ones are cut to.
 LONGEST_STEP, AIMED_STEP = 0.04, 0.03
-LARGEST_TURN, AIMED_TURN = 0.15, 0.1
-# Shorter steps may turn as they like.
-TOO_SHORT = 0.004
-MOST_PARTS = 24
-# A pole that moves this far [sizes of the picture] per ln K is at a meeting point.
-AT_MEETING = 1e4
 # Followed from both sides, one branch misses itself by less than this [sizes of the picture].
 GATE = 0.3
 # A branch without a partner must be outside this many times farther on.
@@ -93,7 +95,7 @@ def _links(
     """Which pole of the next gain each pole becomes, -1 for none, shape (m-1, n), and the rest as in Joined."""
     half, first = np.zeros((gains.size - 1, 1)), int(gains[0] == 0.0)
     half[first:, 0] = 0.5 * np.log(gains[first + 1 :] / gains[first:-1])
-    room = 0.5 * _nearest_neighbour(poles)
+    room = 0.5 * nearest_neighbour(poles)
     with np.errstate(all="ignore"):
         rates = -1.0 / L.log_derivative(poles)
         ahead, back = rates[:-1] * half, rates[1:] * half
@@ -126,14 +128,6 @@ def _links(
     return links, (lost | found).any(axis=1), at, missed
 
 
-def _nearest_neighbour(points: ComplexArray) -> FloatArray:
-    m, n = points.shape
-    gap = np.abs(points[:, :, None] - points[:, None, :])
-    gap.reshape(m, n * n)[:, :: n + 1] = np.inf
-    out: FloatArray = np.fmin.reduce(gap, axis=1)
-    return out
-
-
 def smooth(L: TransferFunction, known: Branches, inside: Inside, size: float) -> tuple[Branches, FloatArray]:
     """Gains added where a branch jumps or turns, until it looks smooth; and gains at which some pole was not found.
 
@@ -146,17 +140,16 @@ def smooth(L: TransferFunction, known: Branches, inside: Inside, size: float) ->
         if not cut.size or known.gains.size >= MAX_GAINS:
             break
         count = parts[cut] - 1
-        at = np.repeat(cut, count)
-        x = (1 + np.arange(at.size) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(count + 1, count)
+        at, x = subdivided(cut, count)
         share = np.where(back[at], 1.0 - (1.0 - x) ** 2, x**2)
         gains = np.where(power[at], low[at] + share * (high - low)[at], low[at] * (high / low)[at] ** x)
-        guess = _points(cubic[:, at], x[:, None])
+        guess = hermite(cubic[:2, at], cubic[2:, at], x[:, None])
         poles, good = polish_closed_loop_poles(L, guess, gains[:, None], steps=6)
         poles.imag[guess.imag == 0.0] = 0.0
         # Next to a root of L a pole may move by less than rounding.
         still = np.abs(cubic[1, at] - cubic[0, at]) <= 16.0 * EPSILON * np.abs(guess)
         poles[still] = guess[still]
-        good &= np.abs(poles - guess) < 0.2 * _nearest_neighbour(guess)
+        good &= np.abs(poles - guess) < 0.2 * nearest_neighbour(guess)
         missing = ~(good | still)
         lost = (missing & inside(guess)).any(axis=1)
         if lost.any():
@@ -167,14 +160,6 @@ def smooth(L: TransferFunction, known: Branches, inside: Inside, size: float) ->
         meeting = np.concatenate([known.meeting, np.zeros(at.size, dtype=bool)])
         known = Branches(gains[order], np.concatenate([known.poles, poles])[order], meeting[order])
     return known, np.zeros(0)
-
-
-def _points(cubic: ComplexArray, x: FloatArray) -> ComplexArray:
-    """Where cubics with the ends and slopes there, shape (4, places, n), are at places x, shape (places, 1)."""
-    start, end, forward, backward = cubic
-    rest = 1.0 - x
-    ends = rest**2 * (1.0 + 2.0 * x) * start + x**2 * (1.0 + 2.0 * rest) * end
-    return np.asarray(ends + x * rest * (rest * forward - x * backward))
 
 
 def _cubics(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -11,6 +12,7 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.intp]
 
 # Of a branch in the picture: the longest step, relative to its size, and the largest turn [rad] between gains. What
 # exceeds them is cut finer than that, so that one cut is enough.
@@ -24,6 +26,21 @@ FAR = 3.0
 MOST_PARTS = 24
 # A pole that moves this far [sizes of the picture] per ln K is at a meeting point.
 AT_MEETING = 1e4
+
+
+def subdivided(cut: IntArray, count: IntArray) -> tuple[IntArray, FloatArray]:
+    """So many evenly spaced places within each interval to be cut: the intervals' numbers and the places, 0 to 1."""
+    at = np.repeat(cut, count)
+    place = 1 + np.arange(at.size) - np.repeat(np.cumsum(count) - count, count)
+    return at, place / np.repeat(count + 1, count)
+
+
+def hermite(ends: Iterable[ComplexArray], slopes: Iterable[ComplexArray], x: FloatArray) -> ComplexArray:
+    """Cubics with these two ends and slopes there, shape (places, n) each, at places x from 0 to 1, (places, 1)."""
+    (start, end), (forward, backward) = ends, slopes
+    rest = 1.0 - x
+    straight = rest**2 * (1.0 + 2.0 * x) * start + x**2 * (1.0 + 2.0 * rest) * end
+    return np.asarray(straight + x * rest * (rest * forward - x * backward))
 
 
 class Sampled(NamedTuple):
@@ -46,7 +63,7 @@ class Sampled(NamedTuple):
         order = np.concatenate([self.gains, more.gains]).argsort(kind="stable")
         return Sampled(*(np.concatenate(pair)[order] for pair in zip(self, more, strict=True)))
 
-    def joined(self, links: npt.NDArray[np.intp]) -> Sampled:
+    def joined(self, links: IntArray) -> Sampled:
         """One branch a column, given which pole of the next gain each pole becomes."""
         order = [list(range(self.poles.shape[1]))]
         for step in links.tolist():
@@ -88,7 +105,7 @@ class Cubics:
     slopes: ComplexArray
     directions: ComplexArray
 
-    def gains(self, at: npt.NDArray[np.intp], x: FloatArray) -> FloatArray:
+    def gains(self, at: IntArray, x: FloatArray) -> FloatArray:
         """K at the places x of the intervals ``at``."""
         low, high, power = self.low[at], self.high[at], self.power[at]
         out = low ** (1.0 - x) * high**x
@@ -99,14 +116,11 @@ class Cubics:
             out[bent] = np.where(back, high - share, low + share)
         return np.asarray(out)
 
-    def points(self, at: npt.NDArray[np.intp], x: FloatArray) -> ComplexArray:
+    def points(self, at: IntArray, x: FloatArray) -> ComplexArray:
         """Where the cubics are at those places, shape (places, n)."""
-        x = x[:, None]
-        rest = 1.0 - x
-        ends = rest**2 * (1.0 + 2.0 * x) * self.start[at] + x**2 * (1.0 + 2.0 * rest) * self.end[at]
-        return np.asarray(ends + x * rest * (rest * self.slopes[0, at] - x * self.slopes[1, at]))
+        return hermite((self.start[at], self.end[at]), self.slopes[:, at], x[:, None])
 
-    def needed_parts(self, size: float) -> npt.NDArray[np.intp]:
+    def needed_parts(self, size: float) -> IntArray:
         """Into how many parts each interval must be cut for the branches to look smooth, shape (m-1,)."""
         chord = self.end - self.start
         distance = np.minimum(np.abs(self.start), np.abs(self.end))

@@ -1,4 +1,4 @@
-"""Poles of one gain paired with those of the next."""
+"""Poles of one gain, how near they are to each other, and paired with those of the next."""
 
 from __future__ import annotations
 
@@ -24,3 +24,12 @@ def nearest_pairs(gap: npt.NDArray[np.float64], gate: float = np.inf) -> list[tu
             if not (free_rows and free_columns):
                 break
     return pairs
+
+
+def nearest_neighbour(points: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
+    """Distance of each point to the nearest other of its row but NaN, shape (m, n); infinite where it is alone."""
+    m, n = points.shape
+    gap = np.abs(points[:, :, None] - points[:, None, :])
+    gap.reshape(m, n * n)[:, :: n + 1] = np.inf
+    out: npt.NDArray[np.float64] = np.fmin.reduce(gap, axis=1)
+    return out

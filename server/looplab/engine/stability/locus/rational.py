@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from looplab.engine.stability.locus.construction import Breakaway
-from looplab.engine.stability.locus.cubics import Sampled, cubics_between, looks_smooth
+from looplab.engine.stability.locus.cubics import Sampled, cubics_between, looks_smooth, subdivided
 from looplab.engine.stability.locus.meeting import at_meeting
 from looplab.engine.stability.locus.near_roots import poles_near_roots
-from looplab.engine.stability.locus.pairs import nearest_pairs
+from looplab.engine.stability.locus.pairs import nearest_neighbour, nearest_pairs
 from looplab.engine.stability.polish import polish_with_slope
 from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.realization import realize
@@ -76,7 +76,7 @@ def _poles_at(L: TransferFunction, gains: FloatArray, breaks: tuple[Breakaway, .
     found = np.linalg.eigvals(ss.A - effective[:, None, None] * (ss.B[:, None] * ss.C)).astype(complex)
     out, good, slope = polish_with_slope(L, found, gains[:, None], steps=2)
     # Near a break-away Halley's method may pull two roots into one: keep the eigenvalues there.
-    good &= np.abs(out - found) < 0.2 * _nearest_neighbour(found)
+    good &= np.abs(out - found) < 0.2 * nearest_neighbour(found)
     if np.count_nonzero(good) < good.size:
         out = np.where(good, out, found)
     out.imag[found.imag == 0.0] = 0.0
@@ -107,13 +107,6 @@ def _with_poles_near_roots(L: TransferFunction, gains: FloatArray, poles: Comple
     return out
 
 
-def _nearest_neighbour(points: ComplexArray) -> FloatArray:
-    m, n = points.shape
-    gap = np.abs(points[:, :, None] - points[:, None, :])
-    gap.reshape(m, n * n)[:, :: n + 1] = np.inf
-    return gap.min(axis=1)
-
-
 def _joined_eigenvalues(L: TransferFunction, gains: FloatArray, breaks: tuple[Breakaway, ...]) -> Sampled:
     """Poles at the gains and at some between, so that it is sure which becomes which; one branch a column."""
     begin = Sampled(np.zeros(1), L.poles[None, :], np.zeros((1, L.order), dtype=complex), np.zeros(1, dtype=bool))
@@ -139,7 +132,7 @@ def _links(found: Sampled) -> tuple[npt.NDArray[np.intp], BoolArray]:
     half[1:, 0] = 0.5 * np.log(gains[2:] / gains[1:-1])
     ahead, back = rates[:-1] * half, rates[1:] * half
     # At a meeting point the tangent is lost; next to one it points too far.
-    room = 0.5 * _nearest_neighbour(poles)
+    room = 0.5 * nearest_neighbour(poles)
     start = poles[:-1] + np.where(np.abs(ahead) < room[:-1], ahead, 0.0)
     end = poles[1:] - np.where(np.abs(back) < room[1:], back, 0.0)
     gap = np.abs(start[:, :, None] - end[:, None, :])
@@ -175,8 +168,7 @@ def _smooth(L: TransferFunction, found: Sampled, size: float) -> Sampled:
             keep = np.sort(np.argsort(-count, kind="stable")[:room])
             cut = cut[keep]
             count = np.maximum(1, count[keep] * room // max(int(count[keep].sum()), 1))
-        at = np.repeat(cut, count)
-        fraction = (1 + np.arange(at.size) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(count + 1, count)
+        at, fraction = subdivided(cut, count)
         gains, guess = cubics.gains(at, fraction), cubics.points(at, fraction)
         poles, good, slope = polish_with_slope(L, guess, gains[:, None], steps=6)
         more = Sampled(gains, poles, -1.0 / slope, np.zeros(gains.size, dtype=bool))
@@ -184,7 +176,7 @@ def _smooth(L: TransferFunction, found: Sampled, size: float) -> Sampled:
             # A pole that does not move from one end of the interval to the other is there: on a root of L, mostly.
             still = ~good & (np.abs(cubics.end[at] - cubics.start[at]) <= ROUNDINGS * np.abs(guess))
             poles[still], more.rates[still], good[still] = guess[still], 0.0, True
-        good &= np.abs(poles - guess) < 0.4 * _nearest_neighbour(guess)
+        good &= np.abs(poles - guess) < 0.4 * nearest_neighbour(guess)
         if np.count_nonzero(good) == good.size:
             found = found.merged(more)
             continue
