@@ -5,7 +5,9 @@ import os
 import pickle
 import signal
 import time
-from collections.abc import Iterator
+from collections.abc import Coroutine, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import numpy as np
 import pytest
@@ -53,19 +55,25 @@ def end_itself() -> None:
     os.kill(os.getpid(), signal.SIGKILL)
 
 
+def finished(work: Coroutine[Any, Any, Any]) -> Any:
+    """What comes of it, in a thread of its own: after page tests a loop of events runs in this one."""
+    with ThreadPoolExecutor(1) as thread:
+        return thread.submit(asyncio.run, work).result()
+
+
 async def together(*tasks):
     return await asyncio.gather(*tasks, return_exceptions=True)
 
 
 def test_a_result_comes_back(pool):
-    found = asyncio.run(pool.run(double, np.arange(3.0)))
+    found = finished(pool.run(double, np.arange(3.0)))
     assert found.tolist() == [0, 2, 4]
-    assert asyncio.run(pool.run(process_id)) != os.getpid()
+    assert finished(pool.run(process_id)) != os.getpid()
 
 
 def test_an_error_comes_back_with_all_it_says(pool):
     with pytest.raises(ParseError) as caught:
-        asyncio.run(pool.run(fail))
+        finished(pool.run(fail))
     error = caught.value
     assert (error.column, error.field, error.hint) == (7, "states[0].equation", "write it again")
     assert str(error) == "no good (column 7)"
@@ -81,35 +89,35 @@ def test_errors_survive_the_way_between_processes(error):
 
 @pytest.mark.parametrize("task", [(compute, 60.0), (compute_inside_lapack,)], ids=["python", "lapack"])
 def test_what_computes_too_long_is_ended_and_the_others_go_on(pool, task):
-    slow, quick = asyncio.run(together(pool.run(*task), pool.run(compute, 0.05)))
+    slow, quick = finished(together(pool.run(*task), pool.run(compute, 0.05)))
     assert isinstance(slow, TooSlow)
     assert "0.5 s" in str(slow)
     assert quick == "done"
-    assert asyncio.run(pool.run(compute, 0.01)) == "done"
+    assert finished(pool.run(compute, 0.01)) == "done"
 
 
 def test_time_on_a_busy_machine_is_not_counted(pool):
-    assert asyncio.run(pool.run(rest, 1.0)) == "rested"
+    assert finished(pool.run(rest, 1.0)) == "rested"
 
 
 def test_what_never_ends_is_ended_at_its_deadline():
     pool = WorkerPool(workers=1, budget=5.0, deadline=0.5)
     try:
         with pytest.raises(TooSlow):
-            asyncio.run(pool.run(rest, 60.0))
-        assert asyncio.run(pool.run(rest, 0.0)) == "rested"
+            finished(pool.run(rest, 60.0))
+        assert finished(pool.run(rest, 0.0)) == "rested"
     finally:
         pool.close()
 
 
 def test_a_worker_that_dies_is_replaced(pool):
     with pytest.raises(Overloaded):
-        asyncio.run(pool.run(end_itself))
-    assert asyncio.run(pool.run(compute, 0.01)) == "done"
+        finished(pool.run(end_itself))
+    assert finished(pool.run(compute, 0.01)) == "done"
 
 
 def test_more_than_can_wait_is_refused(pool):
-    found = asyncio.run(together(*(pool.run(rest, 1.5) for _ in range(12))))
+    found = finished(together(*(pool.run(rest, 1.5) for _ in range(12))))
     assert found.count("rested") == 6
     assert sum(isinstance(each, Overloaded) for each in found) == 6
 
@@ -117,7 +125,7 @@ def test_more_than_can_wait_is_refused(pool):
 def test_workers_start_with_the_first_task_and_end_with_the_pool():
     pool = WorkerPool(workers=1)
     assert pool._pool is None
-    worker = asyncio.run(pool.run(process_id))
+    worker = finished(pool.run(process_id))
     os.kill(worker, 0)
     pool.close()
     for _ in range(50):
