@@ -1,6 +1,7 @@
 """Shared by all tests: the repository's folder and a running `looplab serve`."""
 
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -17,8 +18,9 @@ settings.load_profile("looplab")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    # The browser's event loop stays in the main thread once started, and its tests are the slow ones: last.
-    items.sort(key=lambda item: "browser" in Path(item.path).parts)
+    # The long files first: at the end no worker waits for another. Pages take longest.
+    many = Counter(item.path for item in items)
+    items.sort(key=lambda item: ("browser" not in item.path.parts, -many[item.path]))
 
 
 @pytest.fixture(scope="session")
