@@ -75,14 +75,12 @@ def test_a_gain_that_stays_above_1() -> None:
     assert "never reaches 1" in margins(parse_transfer_function("0.5 exp(-s)")).reasons["PM_deg"]
 
 
-@pytest.mark.parametrize("text", ["1/s^2", "1/(s^2+1)", "-2"])
+@pytest.mark.parametrize("text", ["1/s^2", "1/(s^2+1)"])
 def test_a_phase_that_stands_at_the_limit_is_said_to_stand_there(text: str) -> None:
     """1/s^2 and, beyond its resonance, 1/(s^2+1) are real and negative: a gain margin would be any number."""
     result = margins(parse_transfer_function(text))
-    if result.GM is None:
-        assert "stands at -180 deg" in result.reasons["GM"]
-    else:  # a pure gain has its margin at omega = 0
-        assert result.GM == 0.5
+    assert result.GM is None
+    assert "stands at -180 deg" in result.reasons["GM"]
 
 
 @pytest.mark.parametrize("text", ["exp(-s)", "(s-1)/(s+1)", "(s^2-s+4)/(s^2+s+4) exp(-0.2 s)"])

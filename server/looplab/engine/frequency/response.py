@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import suppress
 from functools import lru_cache
 from math import ceil, floor, isfinite, log, log10, pi
@@ -73,7 +74,7 @@ def _turning_roots(unit: TransferFunction) -> Columns:
     return _columns(turns)
 
 
-def _columns(weights: dict[complex, float]) -> Columns:
+def _columns(weights: Mapping[complex, float]) -> Columns:
     """Imaginary and real part of the points with a weight, shape (k, 1) each, and the weights, shape (k,)."""
     used = [(r.imag, r.real, weight) for r, weight in weights.items() if weight]
     imag, real, weight = np.array(used).reshape(-1, 3).T.copy()
@@ -133,19 +134,15 @@ def rate(system: TransferFunction, omega: FloatArray) -> ComplexArray:
 @lru_cache(maxsize=64)
 def _weighted_roots(unit: TransferFunction) -> Columns:
     """Of the distinct roots imaginary and real part, and multiplicity, negative for poles."""
-    times: dict[complex, float] = {}
-    for roots, sense in ((unit.zeros.tolist(), 1.0), (unit.poles.tolist(), -1.0)):
-        for r in roots:
-            times[r] = times.get(r, 0.0) + sense
-    return _columns(times)
+    return _columns(unit.multiplicities)
 
 
 @lru_cache(maxsize=64)
 def corners(unit: TransferFunction) -> tuple[float, float]:
     """The slowest and the fastest corner, the dead time's included [rad/time]; 1 where there is none."""
-    found = [abs(r) for r in unit.zeros.tolist() + unit.poles.tolist() if r] + (
-        [1.0 / unit.theta] if unit.theta > 0 else []
-    )
+    found = [abs(r) for r in unit.zeros.tolist() + unit.poles.tolist() if r]
+    if unit.theta > 0:
+        found.append(1.0 / unit.theta)
     return (min(found), max(found)) if found else (1.0, 1.0)
 
 

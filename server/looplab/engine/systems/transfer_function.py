@@ -185,6 +185,19 @@ class TransferFunction:
         return 0.0 if self.is_proper else float(np.copysign(np.inf, self.gain))
 
     @property
+    def multiplicities(self) -> dict[complex, int]:
+        """Each root once with how often it is a zero, less how often it is a pole; 0 where the two cancel."""
+        return self.unit._multiplicities
+
+    @cached_property
+    def _multiplicities(self) -> dict[complex, int]:
+        out: dict[complex, int] = {}
+        for roots_, sense in ((self.zeros.tolist(), 1), (self.poles.tolist(), -1)):
+            for r in roots_:
+                out[r] = out.get(r, 0) + sense
+        return out
+
+    @property
     def origin_order(self) -> int:
         """Poles minus zeros at s = 0: the number of integrators (negative: differentiators)."""
         return self.unit._origin[0]

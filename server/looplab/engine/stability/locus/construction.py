@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cmath import phase
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import degrees, exp, inf, isfinite, log
@@ -20,7 +21,7 @@ from looplab.engine.systems.transfer_function import TransferFunction
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 # Each root once, with its multiplicity.
-Weights = list[tuple[complex, float]]
+Weights = Sequence[tuple[complex, int]]
 TURNING_STEPS = 6
 # Of a gain that is a number, and so is a hundred times as much.
 LARGEST_LOG = 690.0
@@ -195,7 +196,7 @@ def breakaway_points(L: TransferFunction) -> tuple[Breakaway, ...]:
     L, _ = split_hidden_modes(L)
     if not L.order:
         return ()
-    weights = _weights(L)
+    weights = list(L.multiplicities.items())
     sizes = [abs(r) for r, _ in weights if r]
     unit = exp(sum(map(log, sizes)) / len(sizes)) if sizes else 1.0
     loop = scalar_loop(L.unit)
@@ -213,15 +214,6 @@ def breakaway_points(L: TransferFunction) -> tuple[Breakaway, ...]:
         if all(abs(b.s - s) > 1e-6 * max(0.1 * unit, abs(s)) for b in out):
             out += [Breakaway(at, K.real) for at in ((s, s.conjugate()) if s.imag else (s,))]
     return tuple(sorted(out, key=attrgetter("K")))
-
-
-def _weights(L: TransferFunction) -> Weights:
-    """The roots of L, each once, and their multiplicities: positive for zeros, negative for poles."""
-    out: dict[complex, float] = {}
-    for roots, sign in ((L.zeros.tolist(), 1.0), (L.poles.tolist(), -1.0)):
-        for r in roots:
-            out[r] = out.get(r, 0.0) + sign
-    return list(out.items())
 
 
 def _turning_points(weights: Weights, theta: float) -> list[complex]:

@@ -226,7 +226,15 @@ def _followed(
 
 def _proved(L: TransferFunction, gains: FloatArray, branches: ComplexArray, inside: Rectangle) -> bool:
     """Whether the argument principle finds as many poles at some of the gains."""
-    at = np.linspace(1, gains.size - 1, CHECKS).astype(int)
-    there = np.count_nonzero(np.isfinite(branches[:, at]), axis=0).tolist()
-    counted = count_on_both_sides(L, gains[at], inside.left, inside.right, inside.top)
-    return all(count in (None, many) for count, many in zip(counted, there, strict=True))
+    open_ = np.linspace(1, gains.size - 1, CHECKS).astype(int)
+    # Where a pole lies on the border there is no count: the next gain on either side is asked.
+    for step in (0, 1, -1):
+        at = np.clip(open_ + step, 1, gains.size - 1)
+        there = np.count_nonzero(np.isfinite(branches[:, at]), axis=0).tolist()
+        counted = count_on_both_sides(L, gains[at], inside.left, inside.right, inside.top)
+        if any(count not in (None, many) for count, many in zip(counted, there, strict=True)):
+            return False
+        open_ = open_[[count is None for count in counted]]
+        if not open_.size:
+            return True
+    return False
