@@ -90,3 +90,11 @@ def test_on_the_limit_there_is_no_verdict() -> None:
 def test_no_loop_at_all_is_stable() -> None:
     verdict = bode_criterion(parse_transfer_function("0"))
     assert (verdict.stable, verdict.applies, verdict.omega_180) == (True, True, None)
+
+
+@pytest.mark.parametrize("text", ["0/(s(s+1))", "s(s+2)/(s(s+1)^2)", "(s^2+4)/((s^2+4)(s+1))"])
+def test_a_mode_on_the_axis_that_the_loop_does_not_reach_is_no_proof_of_stability(text: str) -> None:
+    """Z = 0, but the integrator or the oscillator goes on by itself: its pole stays at 0 or +-2j for every gain."""
+    found = bode_criterion(parse_transfer_function(text))
+    assert (found.applies, found.nyquist_stable, found.agrees) == (False, None, None)
+    assert any("does not decay" in why for why in found.unmet)

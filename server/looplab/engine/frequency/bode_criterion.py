@@ -9,7 +9,8 @@ import numpy as np
 from looplab.engine.frequency.crossings import OFTEN, crossings
 from looplab.engine.frequency.indentation import indentation_arcs
 from looplab.engine.frequency.nyquist import nyquist_count, right_half_plane
-from looplab.engine.frequency.response import phase_rad
+from looplab.engine.frequency.response import AXIS_GAP, phase_rad
+from looplab.engine.systems.hidden_modes import split_hidden_modes
 from looplab.engine.systems.transfer_function import TransferFunction
 
 # |ln GM| below which L passes through -1.
@@ -34,7 +35,8 @@ class BodeCriterion:
     magnitude : float or None
         \\|L\\| there [-].
     nyquist_stable : bool or None
-        Nyquist's verdict, Z = 0; None where the curve passes through -1.
+        Nyquist's verdict, Z = 0; None on the limit: the curve passes through -1, or a mode that it does not know of
+        lies on the imaginary axis.
     agrees : bool or None
         Both say the same; None where one of them says nothing.
     """
@@ -66,6 +68,8 @@ def _unmet(L: TransferFunction) -> list[str]:
         out.append("the feedback is positive at low frequencies: the phase starts half a turn lower")
     if L.gain and L.relative_degree == 0 and (L.order or L.theta):
         out.append("L is not strictly proper: |L| does not fade at high frequencies")
+    if _undamped_hidden_mode(L):
+        out.append("a mode that the loop does not reach lies on the imaginary axis: it does not decay")
     # On which turn each crossing lies: -180 deg is 0, -540 deg is -1.
     turn = np.round((phase_rad(L, found.phase_omega) + np.pi) / (2 * np.pi))
     here = int(np.count_nonzero(turn >= 0))
@@ -74,6 +78,12 @@ def _unmet(L: TransferFunction) -> list[str]:
     if found.gain_omega.size > 1:
         out.append(f"there are {found.gain_omega.size} gain crossovers")
     return out
+
+
+def _undamped_hidden_mode(L: TransferFunction) -> bool:
+    """Whether a cancelled mode, or any where L is zero, lies on the imaginary axis."""
+    hidden = split_hidden_modes(L)[1] if L.gain else L.poles
+    return any(abs(p.real) <= AXIS_GAP * abs(p) for p in hidden.tolist())
 
 
 def bode_criterion(L: TransferFunction) -> BodeCriterion:
@@ -101,7 +111,9 @@ def bode_criterion(L: TransferFunction) -> BodeCriterion:
        Education 35 (2001) 208-211.
     """
     found, count = crossings(L), nyquist_count(L)
-    nyquist = None if count.through_minus_one else False if count.Z is None else count.Z == 0
+    nyquist: bool | None = count.Z == 0
+    if count.through_minus_one or (nyquist and _undamped_hidden_mode(L)):
+        nyquist = None
     if found.overrun:
         return BodeCriterion(None, False, (f"the phase crosses -180 deg {OFTEN}",), None, None, nyquist, None)
     listed = np.isfinite(found.phase_log_magnitude)
